@@ -26,7 +26,7 @@ void explain(const StressPlan& plan, const Stress& stress, Report& report) {
   report.add(std::move(criteria));
   report.heading("Summary");
   report.add(summary_table(plan, stress), "Cells by verdict.");
-  for (const auto& note : stress.notes) report.paragraph("No reference, left out: " + note);
+  for (const auto& note : stress.notes) report.paragraph("No reference, left out: " + as_plain(note));
 }
 
 void add_long_runs(const Stress& stress, Report& report) {

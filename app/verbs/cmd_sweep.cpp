@@ -298,7 +298,14 @@ int cmd_sweep(const Arguments& arguments) {
   Report report{"Sweep: " + title_of(scene, plan)};
   report.paragraph(count + ".");
   for (const auto& picture : pictures) report.picture(picture, picture);
-  if (sweep.table.rows.size() <= 1000) report.add(sweep.table);
+  if (sweep.table.rows.size() <= 1000) {
+    Table plain =
+        sweep.table;  // names of the scene's entries and words among the values are not the report's
+    for (std::string& column : plain.columns) column = as_plain(column);
+    for (auto& row : plain.rows)
+      for (std::string& cell : row) cell = as_plain(cell);
+    report.add(std::move(plain));
+  }
   session.write("sweep.md", report_markdown(report));
   if (!sweep.missing.empty() && !arguments.study.merge.empty())
     throw FileError(session.directory(),

@@ -34,10 +34,14 @@ Table outcome_of(const Simulation& run, const Diagnostics& diagnostics) {
   row("ended", std::string(to_string(run.status)) + " at " + number(run.trajectory.end_time(), " s"));
   if (!run.message.empty()) row("because", run.message);
   const SolverOptions& solver = run.options;
-  row("method", solver.method +
-                    (solver.method == "dvm" ? ", " + std::to_string(solver.stages) + " stages" : "") +
-                    ", step " + number(solver.step, " s") + (solver.adaptive ? " at most" : "") + ", " +
-                    std::to_string(run.steps) + " steps");
+  if (solved_as(run).name == "path")
+    row("method", "along its path, states " + number(solver.step, " s") + " apart at most, " +
+                      std::to_string(run.steps) + " of them");
+  else
+    row("method", solver.method +
+                      (solver.method == "dvm" ? ", " + std::to_string(solver.stages) + " stages" : "") +
+                      ", step " + number(solver.step, " s") + (solver.adaptive ? " at most" : "") + ", " +
+                      std::to_string(run.steps) + " steps");
   row("largest constraint error", number(largest_magnitude(diagnostics.at("constraint_max_m").values), " m"));
   row("largest energy balance", number(largest_magnitude(diagnostics.at("energy_balance_J").values), " J"));
   for (const Event& event : run.events) row("event", event.name + " at " + number(event.t, " s"));

@@ -199,7 +199,8 @@ void add_words(const ExportJob& job, Page& page) {
         std::string(to_string(run.status)) + " at " + short_text(run.trajectory.end_time(), 9) + " s");
   facts("structure", std::to_string(structure.node_copies.size()) + " nodes, " +
                          std::to_string(structure.rod_copies.size()) + " rods");
-  facts("method", solver.method + ", " + std::to_string(run.steps) + " steps");
+  facts("method", (solved_as(run).name == "path" ? "along its path" : solver.method) + ", " +
+                      std::to_string(run.steps) + " steps");
   const auto largest = [&](const char* column) {
     const Series* series = job.diagnostics.find(column);
     return series ? short_text(largest_magnitude(series->values)) : "not looked at";

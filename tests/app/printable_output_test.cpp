@@ -105,6 +105,23 @@ TEST_CASE("titles and paths reach neither the terminal nor a report as commands"
   CHECK(markdown.find("<script>") == std::string::npos);
 }
 
+TEST_CASE("names of entries are in a sweep's report as they are, marks and all") {
+  const ScratchDirectory dir;
+  const std::string scene =
+      dir.write("s.toml",
+                "structure.kind = 'pendulum'\n[[forces]]\nkind = 'drag'\nname = '_s*p*_'\nnodes = ['*']\n"
+                "damping = 0.1\n[solver]\nend_time = 0.2\nstep = 0.1\n");
+  const ProgramResult r = run_program({"sweep", scene, "--vary", "forces[_s*p*_].damping=0.1,0.2",
+                                       "--measure", "energy", "-o", dir / "out", "--quiet"});
+  INFO(r.err);
+  REQUIRE(r.code == 0);
+  const std::string markdown = file_text(dir / "out/sweep.md");
+  const std::size_t table = markdown.find("| forces");
+  REQUIRE(table != std::string::npos);
+  const std::string head = markdown.substr(table, markdown.find('\n', table) - table);
+  CHECK(head.find("\\_s\\*p\\*\\_") != std::string::npos);
+}
+
 TEST_CASE("reports hold anybody's text as text") {
   Report report{"a <b> & c"};
   report.paragraph(evil);
