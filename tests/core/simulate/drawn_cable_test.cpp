@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When a damped cable that is drawn in or paid out begins and ceases to pull, against an integration of its
+// own.
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/study/table.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace drawn_cable_test {
+
+namespace {
+
+constexpr double mass = 3, stiffness = 3000, damping = 30, start_length = 2.3, ramp = 0.2;
+
+struct Case {
+  double rate, velocity;  // of the cable's length behind the ramp; of the mass at first
+};
+
+// A mass on a line away from a support, at 2 m first, and a cable between, whose rate grows evenly to its
+// own.
+std::string scene(const Case& c) {
+  return "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = "
+         "'B', "
+         "position = [2, 0, 0], velocity = [" +
+         exact_number(c.velocity) +
+         ", 0, 0], mass = 3}]\nrods = []\n[[forces]]\nkind = 'cable'\nname = 'c'\nnodes = ['A', 'B']\n"
+         "axial_stiffness = 3000\ndamping = 30\nlength = 2.3\nmotion = 'rate'\nramp = 0.2\nrate = " +
+         exact_number(c.rate) + "\n[solver]\nstages = 5\nstep = 0.002\nend_time = 0.7\n";
+}
+
+double length(const Case& c, double t) {
+  return start_length + c.rate * (t < ramp ? t * t / (2 * ramp) : t - ramp / 2);
+}
+double pull(const Case& c, double t, double x, double v) {
+  const double l = length(c, t), way = c.rate * std::min(t / ramp, 1.0);
+  return stiffness * (x / l - 1) + damping * (v - way);
+}
+
+struct Times {
+  double taut, slack, velocity;
+};
+
+// Straight on to where it draws taut, then by RK4 until it would push.
+Times exact(const Case& c) {
+  double low = 0, high = 0.7;
+  for (int i = 0; i < 100; ++i) {
+    const double t = 0.5 * (low + high);
+    (2 + c.velocity * t < length(c, t) ? low : high) = t;
+  }
+  const double taut = low, h = 1e-5;
+  using Pair = std::array<double, 2>;
+  const auto rate = [&](double t, const Pair& y) { return Pair{y[1], -pull(c, t, y[0], y[1]) / mass}; };
+  const auto plus = [](const Pair& y, double f, const Pair& k) {
+    return Pair{y[0] + f * k[0], y[1] + f * k[1]};
+  };
+  Pair y{2 + c.velocity * taut, c.velocity};
+  for (double t = taut;; t += h) {
+    const Pair k1 = rate(t, y), k2 = rate(t + h / 2, plus(y, h / 2, k1)),
+               k3 = rate(t + h / 2, plus(y, h / 2, k2)), k4 = rate(t + h, plus(y, h, k3));
+    Pair next;
+    for (std::size_t i = 0; i < 2; ++i) next[i] = y[i] + h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+    const double before = pull(c, t, y[0], y[1]), after = pull(c, t + h, next[0], next[1]);
+    if (after < 0) return {taut, t + h * before / (before - after), next[1]};
+    y = next;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a damped cable that is drawn in or paid out pulls from drawing taut until it would push") {
+  for (const Case& c : {Case{-0.8, 0.3}, {0.4, 1.5}, {-1.3, -0.2}}) {
+    INFO("rate " << c.rate << " m/s");
+    const Times truth = exact(c);
+    REQUIRE(truth.taut > ramp);  // times before it are corners of the law
+    const Simulation run = run_scene(scene(c));
+    REQUIRE(run.status == RunStatus::completed);
+    std::vector<Event> events;
+    for (const Event& event : run.events)
+      if (event.kind == "taut" || event.kind == "slack") events.push_back(event);
+    REQUIRE(events.size() >= 2);
+    CHECK(events[0].kind == "taut");
+    CHECK(events[0].name == "c pulls");
+    CHECK(events[0].t == Approx(truth.taut).epsilon(1e-10));
+    CHECK(events[1].kind == "slack");
+    CHECK(events[1].name == "c is slack");
+    // Chords of 1e-5 s on a pull whose bend is some 1e5 of it: 1e-9 of a swing of 0.14 s.
+    CHECK(events[1].t == Approx(truth.slack).margin(1e-9));
+    CHECK(run.trajectory.velocities_at(events[1].t)[3] == Approx(truth.velocity).epsilon(1e-6));
+  }
+}
+
+}  // namespace drawn_cable_test
