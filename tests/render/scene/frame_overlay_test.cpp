@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <set>
 
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/scene/build.hpp"
@@ -136,53 +135,6 @@ solver.end_time = 2
     CHECK(std::abs(bar - metre) < 0.05f);
     CHECK(of == Approx(says));
   }
-}
-
-TEST_CASE("dimensions of the smallest and the largest structures have powers of ten") {
-  const auto dimension = [](const std::string& unit) {
-    const DrawList list = picture("structure.kind = 'custom'\nvariables.L = " + unit + R"(
-structure.nodes = [{name="A",position=[0,0,0]},{name="B",position=["=2*L",0,0]}]
-structure.rods = [{nodes=["A","B"],mass=1}]
-constraints = [{kind="fixed",nodes=["*"]}]
-solver.end_time = 2
-)",
-                                  "dimensions = true\ntime = false\n");
-    const TextLabel* text = label(list, " m");
-    REQUIRE(text);
-    return text->text;
-  };
-  CHECK(dimension("1") == "2.00 m");
-  CHECK(dimension("1e4") == "20000.0 m");
-  CHECK(dimension("1.25e-3") == "0.00250 m");
-  CHECK(dimension("1e8") == "2\u00D710\u2078 m");
-  CHECK(dimension("1.234e-6") == "2.47\u00D710\u207B\u2076 m");
-}
-
-TEST_CASE("names of nodes and rods lie on nothing else that is written") {
-  const std::string structure =
-      "title = 'A ring'\nstructure.kind = 'hoop'\nstructure.fold_angle = 85.0\nsolver.end_time = 3.0\n";
-  const std::string others = "scale_bar = true\naxes = true\nlegend = true\ninset = ['energy_balance_J']\n";
-  const DrawList plain = picture(structure, others),
-                 named = picture(structure, others + "node_labels = true\nrod_labels = true\n");
-  std::set<std::string> before;
-  for (const TextLabel& l : plain.labels) before.insert(l.text);
-  int names = 0;
-  for (const TextLabel& l : named.labels) {
-    if (before.contains(l.text)) continue;
-    ++names;
-    const auto wide = static_cast<float>(plot::text_width(l.text, static_cast<double>(l.height))) / 2;
-    CAPTURE(l.text);
-    const Inset& in = named.inset;
-    CHECK((l.x + wide < in.x || l.x - wide > in.x + in.width || l.y + l.height < in.y ||
-           l.y > in.y + in.height));
-    for (const TextLabel& other : plain.labels) {
-      const auto room =
-          static_cast<float>(plot::text_width(other.text, static_cast<double>(other.height) / 1.17));
-      const float left = other.x - other.align * room;
-      CHECK((!overlap(l, other) || l.x + 0.8f * wide < left || l.x - 0.8f * wide > left + room));
-    }
-  }
-  CHECK(names > 20);  // of 12 nodes and 24 rods
 }
 
 // Two balls that fly away from where they are deployed, 1 m ahead: after 2 s at 0.5 m/s by -100 %.

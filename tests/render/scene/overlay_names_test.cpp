@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lengths and names beside a picture.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+#include <string>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
+#include "core/simulate/simulation.hpp"
+#include "render/plot/text_metrics.hpp"
+#include "render/scene/film_style.hpp"
+#include "render/scene/view.hpp"
+
+using namespace unfurl;
+
+namespace overlay_names_test {
+
+namespace {
+
+DrawList picture(const std::string& structure, const std::string& render) {
+  const Scene scene = read_scene_text(structure + "[render]\n" + render, "ring.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics diagnostics = diagnose(run);
+  FrameStyle style = film_style(scene, run, diagnostics);
+  style.width = 1280, style.height = 720;
+  return FrameBuilder(run.trajectory, style).build(2.0);
+}
+
+bool overlap(const TextLabel& a, const TextLabel& b) {
+  return a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+const TextLabel* label(const DrawList& list, const std::string& end) {
+  const auto found =
+      std::ranges::find_if(list.labels, [&](const TextLabel& l) { return l.text.ends_with(end); });
+  return found == list.labels.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+TEST_CASE("dimensions of the smallest and the largest structures have powers of ten") {
+  const auto dimension = [](const std::string& unit) {
+    const DrawList list = picture("structure.kind = 'custom'\nvariables.L = " + unit + R"(
+structure.nodes = [{name="A",position=[0,0,0]},{name="B",position=["=2*L",0,0]}]
+structure.rods = [{nodes=["A","B"],mass=1}]
+constraints = [{kind="fixed",nodes=["*"]}]
+solver.end_time = 2
+)",
+                                  "dimensions = true\ntime = false\n");
+    const TextLabel* text = label(list, " m");
+    REQUIRE(text);
+    return text->text;
+  };
+  CHECK(dimension("1") == "2.00 m");
+  CHECK(dimension("1e4") == "20000.0 m");
+  CHECK(dimension("1.25e-3") == "0.00250 m");
+  CHECK(dimension("1e8") == "2\u00D710\u2078 m");
+  CHECK(dimension("1.234e-6") == "2.47\u00D710\u207B\u2076 m");
+}
+
+TEST_CASE("names of nodes and rods lie on nothing else that is written") {
+  const std::string structure =
+      "title = 'A ring'\nstructure.kind = 'hoop'\nstructure.fold_angle = 85.0\nsolver.end_time = 3.0\n";
+  const std::string others = "scale_bar = true\naxes = true\nlegend = true\ninset = ['energy_balance_J']\n";
+  const DrawList plain = picture(structure, others),
+                 named = picture(structure, others + "node_labels = true\nrod_labels = true\n");
+  std::set<std::string> before;
+  for (const TextLabel& l : plain.labels) before.insert(l.text);
+  int names = 0;
+  for (const TextLabel& l : named.labels) {
+    if (before.contains(l.text)) continue;
+    ++names;
+    const auto wide = static_cast<float>(plot::text_width(l.text, static_cast<double>(l.height))) / 2;
+    CAPTURE(l.text);
+    const Inset& in = named.inset;
+    CHECK((l.x + wide < in.x || l.x - wide > in.x + in.width || l.y + l.height < in.y ||
+           l.y > in.y + in.height));
+    for (const TextLabel& other : plain.labels) {
+      const auto room =
+          static_cast<float>(plot::text_width(other.text, static_cast<double>(other.height) / 1.17));
+      const float left = other.x - other.align * room;
+      CHECK((!overlap(l, other) || l.x + 0.8f * wide < left || l.x - 0.8f * wide > left + room));
+    }
+  }
+  CHECK(names > 20);  // of 12 nodes and 24 rods
+}
+
+}  // namespace overlay_names_test
