@@ -6,9 +6,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/diagnostics/books.hpp"
+#include "core/diagnostics/motion_samples.hpp"
 #include "core/diagnostics/peak_by_states.hpp"
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
@@ -74,6 +76,20 @@ class Neighbourhood {
   // by its own error, and redundant rows that contradict each other by d, off their common surface by d, have
   // multipliers of any size: states are moved onto the constraints first.
   std::vector<double> sample(const std::vector<double>& times, const StateValues& values) const {
+    MotionSamples* const samples = remembered_samples();
+    const MotionSamples::Key key(&run_, i_, all_, samples ? times : std::vector<double>());
+    const MotionSamples::Sample* known = samples ? samples->find(key) : nullptr;
+    std::optional<MotionSamples::Sample> made;
+    if (!known) made = states_at(times);
+    if (!known) known = samples ? &samples->keep(key, std::move(*made)) : &*made;
+    std::vector<double> out = values(known->piece);
+    for (std::size_t k = 0; k < out.size(); ++k)
+      if (!known->moves[k]) out[k] = std::numeric_limits<double>::quiet_NaN();
+    return out;
+  }
+
+ private:
+  MotionSamples::Sample states_at(const std::vector<double>& times) const {
     const Model& model = run_.trajectory.model(i_);
     const std::shared_ptr<const Model> shared(std::shared_ptr<const Model>(), &model);
     Simulation piece{.trajectory = Trajectory(shared), .options = run_.options};
@@ -91,13 +107,9 @@ class Neighbourhood {
       if (moves.back() && phi.size() > 0) project(there, state);
       piece.trajectory.append(std::move(state), StepReport{});
     }
-    std::vector<double> out = values(piece);
-    for (std::size_t k = 0; k < out.size(); ++k)
-      if (!moves[k]) out[k] = std::numeric_limits<double>::quiet_NaN();
-    return out;
+    return {std::move(piece), std::move(moves)};
   }
 
- private:
   // Accelerations at a state; nothing where they are not known.
   static bool accelerate(System& system, Index1& index1, const State& state, bool singular, VectorXd& a) {
     VectorXd lambda(system.constraints());
@@ -378,8 +390,8 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
     return out;
   };
   const StateValues values = [&](const Simulation& piece) {
-    std::vector<double> out =
-        signed_values((column->unit == "J" ? diagnose_energies(piece) : diagnose_states(piece)).at(name));
+    Diagnostics made;
+    std::vector<double> out = signed_values(judged_piece(piece, column->unit == "J", made).at(name));
     if (name == "fold_angle_rad") count_on(run.trajectory, piece, signed_values(*column), 2 * pi, out);
     if (name == "fold_angle_deg") count_on(run.trajectory, piece, signed_values(*column), 360, out);
     return out;
@@ -431,7 +443,8 @@ VectorXd rod_forces_within_step(const Simulation& run, double t) {
       const Neighbourhood around(run, i);
       if (t < around.end())
         around.sample({t}, [&](const Simulation& piece) {
-          forces = diagnose_states(piece).axial_force.row(0).transpose();
+          Diagnostics made;
+          forces = judged_piece(piece, false, made).axial_force.row(0).transpose();
           return std::vector<double>(piece.trajectory.size());
         });
     }
@@ -444,8 +457,14 @@ thread_local RememberedExtremes* remembered = nullptr;
 
 }  // namespace
 
+MotionSamples* remembered_samples() {
+  return remembered ? remembered->samples_.get() : nullptr;
+}
+
 RememberedExtremes::RememberedExtremes() : outermost_(remembered == nullptr) {
-  if (outermost_) remembered = this;
+  if (!outermost_) return;
+  samples_ = std::make_unique<MotionSamples>();
+  remembered = this;
 }
 RememberedExtremes::~RememberedExtremes() {
   if (outermost_) remembered = nullptr;

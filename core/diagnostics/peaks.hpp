@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -48,6 +49,8 @@ double peak_of_column(const Simulation& run, const Diagnostics& diagnostics, std
 // there; none where no step is around it.
 VectorXd rod_forces_within_step(const Simulation& run, double t);
 
+class MotionSamples;
+
 // While one of these lives, largest and smallest values that this thread has found are not looked for again:
 // several measures of a run, which stays as it is meanwhile, begin with the same ones. One within another
 // shares what that has found.
@@ -61,6 +64,8 @@ class RememberedExtremes {
  private:
   bool outermost_;
   std::map<std::tuple<const Diagnostics*, std::string, bool>, PeakInMotion> found_;
+  std::unique_ptr<MotionSamples> samples_;  // of the outermost
+  friend MotionSamples* remembered_samples();
   friend PeakInMotion extreme_of_column(const Simulation& run, const Diagnostics& diagnostics,
                                         std::string_view column, bool largest);
 };
