@@ -9,20 +9,23 @@ void EditHistory::remember() {
   future_.clear();
 }
 
+void EditHistory::begin(const std::string& gesture) {
+  if (gesture_ == gesture) return;
+  undone_ = std::move(future_);
+  remember();
+  gesture_ = gesture;
+}
+
 void EditHistory::edit(const std::string& key, ParamValue value) {
   const auto it = now_.edits.find(key);
   if (it != now_.edits.end() && it->second == value) return;
-  if (gesture_ != key) remember();
-  gesture_ = key;
-  future_.clear();
+  begin(key);
   now_.edits[key] = std::move(value);
 }
 
 void EditHistory::change(const std::string& gesture, SceneDocument document) {
   if (document == now_) return;
-  if (gesture_ != gesture) remember();
-  gesture_ = gesture;
-  future_.clear();
+  begin(gesture);
   now_ = std::move(document);
 }
 
@@ -30,6 +33,7 @@ void EditHistory::take_back(const std::string& key) {
   if (gesture_ != key || past_.empty()) return;
   now_ = std::move(past_.back().document);
   past_.pop_back();
+  future_ = std::move(undone_);
   end_gesture();
 }
 

@@ -41,12 +41,14 @@ class EditHistory {
     bool opens = false;  // between it and the one next to it towards the present another scene was opened
   };
   void remember();
+  void begin(const std::string& gesture);
   bool step(std::vector<Step>& from, std::vector<Step>& to);
   static constexpr std::size_t deepest = 10000;
 
   SceneDocument now_;
   std::vector<Step> past_, future_;
-  std::string gesture_;  // the key that is being changed
+  std::vector<Step> undone_;  // before the present gesture
+  std::string gesture_;       // the key that is being changed
 };
 
 }  // namespace unfurl

@@ -58,9 +58,7 @@ OrbitCamera panned(OrbitCamera orbit, float dx, float dy, float height) {
 
 OrbitCamera zoomed(OrbitCamera orbit, float steps, const Vec3f& along) {
   const float before = orbit.distance;
-  // Floats draw the structure from 1e-4 m to 1e7 m, and from where it is seen now.
-  orbit.distance = std::clamp(before * std::exp(-0.12f * steps), std::min(1e-4f, 1e-3f * before),
-                              std::max(1e7f, 1e3f * before));
+  orbit.distance = std::clamp(before * std::exp(-0.12f * steps), 1e-15f, 1e15f);  // so that it leads back
   const Vec3f forward = -direction(orbit);
   const float depth = along.dot(forward);
   if (depth > 0.1f) orbit.target += (before - orbit.distance) * (along / depth - forward);

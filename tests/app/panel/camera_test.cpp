@@ -75,6 +75,12 @@ TEST_CASE("the wheel comes nearer and goes away at every size of a structure") {
     const Vec3f ahead = (camera.target - camera.eye).normalized();
     CHECK(zoomed(orbit, 1, ahead).distance == Approx(orbit.distance * std::exp(-0.12f)).epsilon(1e-5));
     CHECK(zoomed(orbit, -1, ahead).distance == Approx(orbit.distance * std::exp(0.12f)).epsilon(1e-5));
+    // As far as it goes, and back: a thousand steps and more are some 1e52 of either.
+    OrbitCamera far = zoomed(orbit, -2000, ahead);
+    CHECK(std::isfinite(far.distance));
+    for (int steps = 0; steps < 2000 && far.distance > orbit.distance; ++steps) far = zoomed(far, 1, ahead);
+    CHECK(far.distance == Approx(orbit.distance).epsilon(0.13));
+    CHECK(zoomed(zoomed(orbit, 2000, ahead), -1, ahead).distance > 1.1e-15f);
   }
 }
 

@@ -51,6 +51,28 @@ TEST_CASE("a drag is one step of undo, redo brings it back, a new change forgets
   CHECK(history.now().edits.contains("solver.step"));
 }
 
+TEST_CASE("what is typed and taken back leaves the redo as it was") {
+  EditHistory history(open_document("hoop6", {}));
+  const SceneDocument start = history.now();
+  history.edit("solver.stages", 4L);
+  CHECK(history.undo());
+  for (const double x : {0.2, 0.25}) history.edit("solver.step", x);
+  CHECK_FALSE(history.can_redo());
+  history.take_back("solver.step");
+  CHECK(history.now() == start);
+  CHECK_FALSE(history.can_undo());
+  CHECK(history.redo());
+  CHECK(std::get<long>(history.now().edits.at("solver.stages")) == 4);
+  // What is kept is a change, and forgets it.
+  CHECK(history.undo());
+  history.edit("solver.step", 0.2);
+  history.end_gesture();
+  history.edit("solver.step", 0.3);
+  history.take_back("solver.step");
+  CHECK(std::get<double>(history.now().edits.at("solver.step")) == 0.2);
+  CHECK_FALSE(history.redo());
+}
+
 TEST_CASE("every declared parameter of a scene has a row, and its value is in the slider's range") {
   for (const LibraryScene& library_scene : library_scenes()) {
     INFO(library_scene.name);
