@@ -156,14 +156,18 @@ std::vector<Index> parts_of(const System& system, const SparseRows* dampers = nu
   return to;
 }
 
-// The rates of a part, as powers that its dampers would take of them: at either end, of their mean, and of
-// what that is off the mean of the ends. What the part does as a whole has none.
-struct PartRates {
-  bool stiff = false;
+// At either end of a step, in the mean, and of what that is off the mean of the ends: squares.
+struct Rates {
   double at_a = 0, at_b = 0, mean = 0, off = 0;
   // They are others behind the start, or before the end, than there: of the time between the mean alone
-  // tells. A rate that falls as exp(-c t / m) has less than a sixth of the step for it. Not of rounding.
-  bool gone(double rounding) const { return 9 * off > std::max({at_a, at_b, mean}) && off > rounding; }
+  // tells. A rate that falls as exp(-c t / m) has less than a sixth of the step for it.
+  bool gone() const { return 9 * off > std::max({at_a, at_b, mean}); }
+};
+// Of a part: its rates, and those that its dampers tell from what it does as a whole, by the powers that they
+// would take of them.
+struct PartRates {
+  bool stiff = false;
+  Rates all, damped;
 };
 
 }  // namespace
@@ -185,6 +189,7 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   const auto of = [&](Index i) -> PartRates& {
     return rates[static_cast<std::size_t>(parts_[static_cast<std::size_t>(i)])];
   };
+  const auto square = [](double x) { return x * x; };
   const auto power = [&](const VectorXd& w) { return VectorXd(-w.cwiseProduct(by_w * w)); };
   const VectorXd bounds = rate_bounds(by_w, system_.mass()), mean = (b.z - a.z) / h;
   const VectorXd of_a = power(a.w), of_b = power(b.w), of_mean = power(mean),
@@ -195,15 +200,16 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
     PartRates& part = of(i);
     part.stiff |= h * bounds[i] > stiff_at;
     if (h * bounds[i] > stiff_at) stiff_[damped_[static_cast<std::size_t>(i)]] = 1;
-    part.at_a += of_a[i], part.at_b += of_b[i], part.mean += of_mean[i], part.off += of_off[i];
+    part.damped.at_a += of_a[i], part.damped.at_b += of_b[i], part.damped.mean += of_mean[i];
+    part.damped.off += of_off[i];
+    part.all.at_a += square(a.w[i]), part.all.at_b += square(b.w[i]), part.all.mean += square(mean[i]);
+    part.all.off += square(mean[i] - 0.5 * (a.w[i] + b.w[i]));
   }
   for (Index i = 0; i < mean.size(); ++i) {
     const PartRates& part = of(i);
     if (!part.stiff) continue;
-    if (part.gone(rounding)) {
-      gone_ = true;
-      ends.a.w[i] = ends.b.w[i] = mean[i];
-    }
+    gone_ = gone_ || part.all.gone() || (part.damped.gone() && part.damped.off > rounding);
+    if (part.all.gone()) ends.a.w[i] = ends.b.w[i] = mean[i];
     const double at_a = ends.a.w[i], at_b = ends.b.w[i];
     ends.by_a[i] = (6 * mean[i] - 4 * at_a - 2 * at_b) / h;
     ends.by_b[i] = (2 * at_a + 4 * at_b - 6 * mean[i]) / h;

@@ -86,7 +86,7 @@ TEST_CASE("a re-entrant sheet has one degree of freedom at every fold angle on i
 TEST_CASE("a re-entrant sheet whose chords would cross is refused") {
   CHECK(refusal("reentrant_sheet", {{"post_length", 0.8}}) ==
         "post_length: chords would cross inside the units: post_length must be more than 2 chord_rod_length "
-        "sin(fold_angle) = 0.866025 m");
+        "sin(fold_angle) = 0.866025403784 m");  // sqrt(3) / 2
 }
 
 TEST_CASE("columns of a structure's own stand behind those that all have, and only where it has them") {
