@@ -95,6 +95,17 @@ TEST_CASE("steps end at the edges of time, and right before its jumps") {
   CHECK(step.edge);
 }
 
+TEST_CASE("the next edge of time is the first behind a time, and none is behind the end") {
+  const TimeGrid cut = grid({{0.5234, false}, {0.7777, true}, {0.9, false}, {1.3, false}});
+  CHECK(cut.next_edge(0.3) == 0.5234);
+  CHECK(cut.next_edge(0.5233) == 0.5234);
+  CHECK(cut.next_edge(0.5234) == 0.7777);
+  CHECK(cut.next_edge(0.8) == 0.9);
+  CHECK(cut.next_edge(0.9) == 1.07);
+  CHECK(cut.next_edge(1.06) == 1.07);
+  CHECK(grid().next_edge(0.4) == 1.07);
+}
+
 TEST_CASE("adaptive steps are those of the turn and change that a step may bring") {
   // A rod of 1.3 m about its end at 2.6 rad/s without forces: omega = 2.6 / s, |w'| / |w| the same, r = 2.6 /
   // (1 + 2.6 h_0 / alpha).
