@@ -178,8 +178,8 @@ TEST_CASE("what a motor puts in against a stiff damper is of order 4") {
 // 1e-9.
 TEST_CASE("a joint that stops within no time takes what one body does not have, whatever the body does") {
   for (const double along : {0.0, 100.0})
-    for (const double damping : {1e8, 1e9, 2e9}) {
-      CAPTURE(along, damping);
+    for (const double joint : {1e8, 1e9, 2e9}) {
+      CAPTURE(along, joint);
       const std::string velocity = "velocity = [0, 1, " + testing::number(along) + "], mass = 1";
       const Simulation run = testing::run_scene(R"([structure]
 kind = "custom"
@@ -193,7 +193,7 @@ kind = "torsion_spring"
 nodes = ["A", "B", "C"]
 axis = [0, 0, 1]
 stiffness = 0
-damping = )" + testing::number(damping) + R"(
+damping = )" + testing::number(joint) + R"(
 [[constraints]]
 kind = "coordinate_stop"
 nodes = ["C"]
