@@ -88,6 +88,33 @@ TEST_CASE("Esc out of a number gives back the value with all its digits") {
   CHECK(other.state().history.now() == document);
 }
 
+TEST_CASE("Esc out of a vector's number after an undo gives back what stood there, and the redo") {
+  SceneDocument document = open_document("pendulum", {});
+  document.overrides = {"gravity.acceleration=[0.5, 0.25, -9.81]", "solver.end_time=0.1"};
+  PanelDriver driver(quick(), document);
+  const auto gravity = [&] {
+    const auto& edits = driver.state().history.now().edits;
+    const auto found = edits.find("gravity.acceleration");
+    return found == edits.end() ? std::vector<double>() : std::get<std::vector<double>>(found->second);
+  };
+  begin(driver, "gravity.acceleration");
+  type_letters(driver, "5");
+  driver.key(Key::enter);
+  driver.settle();
+  CHECK(gravity() == std::vector<double>{0.5, 5, -9.81});
+  CHECK(driver.state().history.undo());
+  driver.settle();
+  CHECK(gravity().empty());
+  begin(driver, "gravity.acceleration");
+  type_letters(driver, "7");
+  CHECK(gravity() == std::vector<double>{0.5, 7, -9.81});
+  driver.key(Key::escape);
+  driver.settle();
+  CHECK(gravity().empty());
+  CHECK(driver.state().history.redo());
+  CHECK(gravity() == std::vector<double>{0.5, 5, -9.81});
+}
+
 TEST_CASE("a comma is a point, or stands between two arguments") {
   PanelDriver driver(quick(), "pendulum");
   for (const auto& [text, value] :
