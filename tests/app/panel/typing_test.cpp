@@ -101,18 +101,18 @@ TEST_CASE("Esc out of a vector's number after an undo gives back what stood ther
   type_letters(driver, "5");
   driver.key(Key::enter);
   driver.settle();
-  CHECK(gravity() == std::vector<double>{0.5, 5, -9.81});
+  CHECK(gravity() == std::vector<double>{5, 0.25, -9.81});
   CHECK(driver.state().history.undo());
   driver.settle();
   CHECK(gravity().empty());
   begin(driver, "gravity.acceleration");
   type_letters(driver, "7");
-  CHECK(gravity() == std::vector<double>{0.5, 7, -9.81});
+  CHECK(gravity() == std::vector<double>{7, 0.25, -9.81});
   driver.key(Key::escape);
   driver.settle();
   CHECK(gravity().empty());
   CHECK(driver.state().history.redo());
-  CHECK(gravity() == std::vector<double>{0.5, 5, -9.81});
+  CHECK(gravity() == std::vector<double>{5, 0.25, -9.81});
 }
 
 TEST_CASE("a comma is a point, or stands between two arguments") {
