@@ -169,7 +169,7 @@ double MeasureFunction::value(const double* q, const Moment& at, int followed) c
   if (terms_.empty()) return value(q, at.near(followed, reference_));
   TermSum sum;
   each_term([&](const MeasureFunction& term, double c, std::size_t, int turn) {
-    const double near = term.near(at, followed < 0 ? -1 : followed + turn);
+    const double near = term.near(at, term.turns_ && followed >= 0 ? followed + turn : -1);
     sum.add(c, term.value(q, 0.0), near, term.turns_);
   });
   return sum.value();
@@ -181,7 +181,7 @@ double MeasureFunction::value_and_gradient(const double* q, double* gradient, co
   TermSum sum;
   each_term([&](const MeasureFunction& term, double c, std::size_t first, int turn) {
     double* const g = gradient + first;
-    const double near = term.near(at, followed < 0 ? -1 : followed + turn);
+    const double near = term.near(at, term.turns_ && followed >= 0 ? followed + turn : -1);
     sum.add(c, term.value_and_gradient(q, g, 0.0), near, term.turns_);
     for (std::size_t i = 0; i < term.stencil_.size(); ++i) g[i] *= c;
   });
