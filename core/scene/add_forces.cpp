@@ -82,11 +82,22 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
   return forces;
 }
 
-// The least change of a warmed rod's length, of its length; at the points of a table.
+// The least change of a warmed rod's length, of its length: of a table at its points and where its spline
+// turns between them, the roots of f' = d_0 + B u + A u^2 on an interval.
 double shortest_share(const Force& warming) {
-  const std::vector<double>& at = warming.size.values;
-  double least = warming.expansion * (at.empty() ? warming.size.offset : at.front());
-  for (const double kelvin : at) least = std::min(least, warming.expansion * kelvin);
+  const TimeFunction& f = warming.size;
+  double least = warming.expansion * f(f.times.empty() ? 0.0 : f.times.front());
+  const auto look = [&](double t) { least = std::min(least, warming.expansion * f(t)); };
+  for (std::size_t i = 0; i + 1 < f.times.size(); ++i) {
+    const double begin = f.times[i], h = f.times[i + 1] - begin;
+    look(begin + h);
+    const double d0 = f.derivative(1, begin), d1 = f.derivative(1, begin + h),
+                 middle = f.derivative(1, begin + 0.5 * h);
+    const double A = 2 * (d0 + d1 - 2 * middle), B = 4 * middle - 3 * d0 - d1;
+    const double q = -0.5 * (B + std::copysign(std::sqrt(std::max(0.0, B * B - 4 * A * d0)), B));
+    for (const double u : {q / A, d0 / q})
+      if (u > 0 && u < 1) look(begin + u * h);
+  }
   return least;
 }
 

@@ -469,6 +469,10 @@ TEST_CASE("a rigid rod that is warm at t = 0 already is named with what warms it
   CHECK(refused(force(warm + "change = 6e4\ntimes = [0, 1, 2]\nvalues = [0, -0.84, 1]"),
                 "forces[0].values: " + gone));
   CHECK(refused(force(warm + "change = -5e4"), "forces[0].change: " + gone));
+  // Between points a spline turns: that through 0, 1, 1, 0 is 1.25 times as high in the middle as its points.
+  const std::string hump = "times = [0, 1, 2, 3]\nvalues = [0, 1, 1, 0]";
+  CHECK(refused(force(warm + "change = -4.01e4\n" + hump), "forces[0].values: " + gone));
+  CHECK(error_of(force(warm + "change = -3.99e4\n" + hump)).empty());
   CHECK(error_of(force(warm + "change = -4.9e4\ntimes = [0, 1]\nvalues = [0, 1]")).empty());
   // What has nothing to do with it is told as before.
   const std::string apart =
