@@ -331,7 +331,8 @@ class PathRun {
     const double lost = 0.5 * motion_.v() * motion_.v();
     const bool from_start = run_.trajectory.size() == 1 && motion_.v() == 0;
     const std::vector<std::size_t> laws = stand_still();
-    if (slope * law_->at(motion_.s(), 0.0, motion_.t()).Q > 0) {
+    const ScalarLaw::Value pull = law_->at(motion_.s(), 0.0, motion_.t());
+    if (slope * pull.Q > std::abs(slope) * (rounded_sum * pull.scale + pull.noise)) {
       add_event(impact(sides_.stops()[i]), lost);
       append(state_at(motion_.t(), motion_.s(), 0));
       if (!laws.empty()) change_model(sides_.model(*base_), true);

@@ -220,19 +220,23 @@ std::vector<double> PathWatch::looked_at(const PathMotion& motion, double from, 
 }
 
 // Regula falsi and, every third time, bisection: to the last bit of the time. A margin that begins at zero
-// and rises first, as behind a rebound, is followed to where it falls again.
+// and rises first, as behind a rebound, is followed to where it falls again; one that begins at the height of
+// a rebound, which may count as zero, too, falls at once.
 double PathWatch::zero_of(const PathMotion& motion, Index i, double a, double b) const {
   double fa = margin(motion, a, i), fb = margin(motion, b, i);
   if (i < static_cast<Index>(sides_.size()) && fa <= 1) {
-    double up = b, m = fb;
+    double up = b, down = b, m = fb;
     for (int it = 0; it < 60 && !(m > std::max(fa, 0.0)); ++it) {
-      b = up;
-      up = a + 0.5 * (b - a);
+      down = up;
+      up = a + 0.5 * (down - a);
       m = margin(motion, up, i);
     }
-    if (!(m > std::max(fa, 0.0)) || !(b > up)) return a;
-    a = up, fa = m;
-    fb = margin(motion, b, i);
+    if (m > std::max(fa, 0.0) && down > up) {
+      a = up, fa = m;
+      b = down, fb = margin(motion, b, i);
+    } else if (!(fa > 0)) {
+      return a;
+    }
   }
   for (int it = 0; it < 200 && b - a > 2e-16 * std::abs(b); ++it) {
     double t = it % 3 == 2 ? 0.5 * (a + b) : b - fb * (b - a) / (fb - fa);

@@ -18,6 +18,9 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 1e-8;        // of the largest push
 constexpr double rate_rounding = 1e-14;  // of the largest rate
+// Of all rates before an impact: it stops everything, and what acts, not what rounding leaves of the motion,
+// tells whether the stop is left.
+constexpr double all_stopped = 1e-13;
 // Of an acceleration, of all that it is the sum of; of one that no push changes, of what cancels where it
 // does not: it is told by no more than PushResponses::movable() tells.
 constexpr double sum_rounding = 1e-12, immovable_rounding = 1e-6;
@@ -187,7 +190,9 @@ class Change {
       impulses = solve_box(D_, b, low, high, of_rates);
     }
     if (!impulses) return fail_at(std::find(struck_.begin(), struck_.end(), true) - struck_.begin());
+    const double fastest = out_.state.w.lpNorm<Eigen::Infinity>();
     responses.give(impulses->x, out_.state.w);
+    if (out_.state.w.lpNorm<Eigen::Infinity>() <= all_stopped * fastest) out_.state.w.setZero();
     const VectorXd after = responses.rates(out_.state.w);
     for (Index r = 0; r < count(); ++r)
       if (struck_[static_cast<std::size_t>(r)])

@@ -7,6 +7,7 @@
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/peaks.hpp"
 #include "core/path/path_run.hpp"
+#include "core/scene/library.hpp"
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -91,6 +92,21 @@ TEST_CASE("what is pressed on a stop at the start rests on it from the start and
 
 // Balanced weights: all that is left is rounding, of m g times the coordinates, which is not judged by
 // itself.
+// By both models alike, wherever the stop is met: rounding leaves 1e-15 of the speed, and no force.
+TEST_CASE("what an impact stops, and nothing pulls away, rests on the stop") {
+  for (int k = 0; k < 13; ++k) {
+    const Scene scene = read_scene_file(
+        find_scene("four_bar"), {"constraints[0]={kind=\"length_stop\",name=\"s\",nodes=[\"A\",\"C\"],min=" +
+                                     number(2 + 0.1 * k) + ",restitution=0}",
+                                 "solver.end_time=1.5"});
+    const auto model = build_model(scene);
+    for (const Simulation& run : {simulate(model, scene.solver), simulate_on_path(model, scene.solver)}) {
+      REQUIRE(run.events.size() == 1);
+      CHECK(run.events[0].name == "rests on stop s");
+    }
+  }
+}
+
 TEST_CASE("a structure on which nothing acts is no failure on the path") {
   const std::vector<std::string> no_stop{"constraints[2].enabled=false", "solver.end_time=0.5"};
   const auto with = [&](std::vector<std::string> more) {

@@ -2,6 +2,7 @@
 // A four-bar linkage under random forces, cables and stops: along its path and by the full model.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <initializer_list>
 #include <random>
 #include <set>
 
@@ -13,6 +14,7 @@
 #include "tests/support/runs_apart.hpp"
 
 using namespace unfurl;
+using unfurl::testing::joined;
 using unfurl::testing::number;
 using unfurl::testing::runs_apart;
 
@@ -30,7 +32,7 @@ class Draw {
     const bool friction = below(4) == 0;
     if (friction) {
       const double kinetic = in(0.05, 8);
-      force("friction", hinge() + ",kinetic=" + number(kinetic) + ",static=" + number(kinetic * in(1, 1.6)));
+      force("friction", {hinge(), ",kinetic=", number(kinetic), ",static=", number(kinetic * in(1, 1.6))});
     }
     const int entries = 1 + below(4);
     for (int i = 0; i < entries; ++i) add(below(friction ? 7 : 10));
@@ -48,14 +50,14 @@ class Draw {
   double in(double a, double b) { return std::uniform_real_distribution<double>(a, b)(random_); }
   double some(double most) { return below(2) ? in(0, most) : 0.0; }
 
-  void force(const std::string& kind, const std::string& words) {
-    out_.push_back("forces[" + std::to_string(forces_++) + "]={kind=\"" + kind + "\"," + words + "}");
+  void force(const std::string& kind, std::initializer_list<std::string> words) {
+    out_.push_back("forces[" + std::to_string(forces_++) + "]={kind=\"" + kind + "\"," + joined(words) + "}");
   }
   void stop(const std::string& nodes) {
     const bool upper = below(2);
-    out_.push_back("constraints[" + std::to_string(stops_++) + "]={kind=\"length_stop\"," + nodes +
-                   (upper ? ",max=" + number(in(3.6, 4.2)) : ",min=" + number(in(1.6, 2.6))) +
-                   ",restitution=" + number(some(0.9)) + "}");
+    out_.push_back(joined({"constraints[", std::to_string(stops_++), "]={kind=\"length_stop\",", nodes,
+                           upper ? ",max=" + number(in(3.6, 4.2)) : ",min=" + number(in(1.6, 2.6)),
+                           ",restitution=", number(some(0.9)), "}"}));
   }
 
   std::string hinge() {
@@ -68,30 +70,30 @@ class Draw {
     const std::string node = below(2) ? R"(nodes=["B"])" : R"(nodes=["C"])";
     switch (kind) {
       case 0:
-        return force("spring", ends + ",stiffness=" + number(in(1, 100)) + ",damping=" + number(some(5)) +
-                                   ",free_length=" + number(in(1.5, 4.5)));
+        return force("spring", {ends, ",stiffness=", number(in(1, 100)), ",damping=", number(some(5)),
+                                ",free_length=", number(in(1.5, 4.5))});
       case 7:
       case 8:
-        return force("spring", ends + ",tension_only=true,stiffness=" + number(in(1, 300)) +
-                                   ",damping=" + number(some(9)) + ",free_length=" + number(in(2.2, 4)));
+        return force("spring", {ends, ",tension_only=true,stiffness=", number(in(1, 300)),
+                                ",damping=", number(some(9)), ",free_length=", number(in(2.2, 4))});
       case 1:
         return force("torsion_spring",
-                     hinge() + ",stiffness=" + number(in(0.5, 20)) + ",damping=" + number(some(1)));
+                     {hinge(), ",stiffness=", number(in(0.5, 20)), ",damping=", number(some(1))});
       case 2: {
         const double begin = in(0, 0.7);
-        return force("load_over_time", node + ",force=[" + number(in(-5, 5)) + ",0," + number(in(-5, 5)) +
-                                           "],times=[" + number(begin) + "," + number(begin + in(0.1, 0.6)) +
-                                           "],values=[" + number(in(-2, 2)) + "," + number(in(-2, 2)) + "]");
+        return force("load_over_time", {node, ",force=[", number(in(-5, 5)), ",0,", number(in(-5, 5)),
+                                        "],times=[", number(begin), ",", number(begin + in(0.1, 0.6)),
+                                        "],values=[", number(in(-2, 2)), ",", number(in(-2, 2)), "]"});
       }
       case 3:
-        return force("follower", "rod=\"coupler\",force=" + number(in(-4, 4)));
+        return force("follower", {"rod=\"coupler\",force=", number(in(-4, 4))});
       case 4:
-        return force("joint_damping", R"(nodes=["B","C"],damping=)" + number(in(0.01, 1)));
+        return force("joint_damping", {R"(nodes=["B","C"],damping=)", number(in(0.01, 1))});
       case 5:
-        return force("drag", node + ",damping=" + number(in(0.01, 2)));
+        return force("drag", {node, ",damping=", number(in(0.01, 2))});
       case 6:
-        return force("motor", hinge() + ",stall_torque=" + number(in(0.2, 2)) + ",no_load_speed=" +
-                                  number(in(30, 300)) + ",gear_ratio=" + number(in(2, 9)));
+        return force("motor", {hinge(), ",stall_torque=", number(in(0.2, 2)),
+                               ",no_load_speed=", number(in(30, 300)), ",gear_ratio=", number(in(2, 9))});
       default:
         return stop(ends);
     }

@@ -203,6 +203,25 @@ TEST_CASE("bounces come to rest after their geometric series, and the stop then 
   CHECK(lost == Approx(100).epsilon(1e-9));
 }
 
+// Flights of 2 s / 2^k, up to the first that ends within 1e-4 of a step: the 22nd, which rises by 3e-13 m. A
+// height that is rounded to 1e-15 m tells the time to 1e-9 s at the last speeds. (The time loop takes heights
+// of 1e-11 m for none.)
+TEST_CASE("on its path every bounce comes down again before the last, however low it is") {
+  const Scene scene = read_scene_text(
+      ball + "[[structure.constraints]]\nkind = \"line\"\nnodes = [\"A\"]\ndirection = [0, 0, 1]\n", "s.toml",
+      {"solver.step=0.005", "solver.end_time=3.1", "constraints[0].rest_speed=0"});
+  const Simulation run = simulate_on_path(build_model(scene), scene.solver);
+  REQUIRE(run.status == RunStatus::completed);
+  REQUIRE(run.events.size() == 23);
+  double t = 1;
+  for (std::size_t k = 0; k < run.events.size(); ++k) {
+    INFO(k);
+    if (k > 0) t += std::ldexp(2.0, -static_cast<int>(k));
+    CHECK(run.events[k].t == Approx(t).margin(1e-8));
+    CHECK(run.events[k].name == (k == 22 ? "rests on stop floor" : "stop floor"));
+  }
+}
+
 TEST_CASE("a stop lets go when it would have to pull") {
   const Simulation run = run_scene(ball + R"(
 [[forces]]
