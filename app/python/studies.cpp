@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -19,6 +20,7 @@
 #include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
 #include "core/simulate/singular_poses.hpp"
+#include "core/study/scene_variation.hpp"
 #include "core/study/solve_for.hpp"
 #include "core/study/study.hpp"
 #include "core/study/sweep.hpp"
@@ -112,9 +114,22 @@ Sweep swept(const SweepPlan& plan, const fs::path& folder, const StudyHooks& hoo
 
 }  // namespace
 
-py::dict sweep_scene(const SceneSource& source,
+namespace {
+
+// For all runs of one study: a file that is edited while it runs is another scene.
+SceneSource as_now(const SceneSource& given) {
+  if (!given.text) return scene_source(given.path, given.overrides);
+  SceneSource source = given;
+  source.files = std::make_shared<FilesBeside>();
+  return source;
+}
+
+}  // namespace
+
+py::dict sweep_scene(const SceneSource& given,
                      const std::vector<std::pair<std::string, std::vector<double>>>& vary,
                      const std::vector<std::string>& measures, int threads, const std::string& folder) {
+  const SceneSource source = as_now(given);
   SweepPlan plan{source, {}, {}, {}};
   for (const auto& [key, values] : vary) {
     SweepAxis axis;
@@ -145,8 +160,9 @@ py::dict sweep_scene(const SceneSource& source,
   return columns_of_table(sweep.table, {plan.axes.size()});
 }
 
-double solve_scene(const SceneSource& source, const std::string& key, const std::string& measure_name,
+double solve_scene(const SceneSource& given, const std::string& key, const std::string& measure_name,
                    double target, const std::optional<std::pair<double, double>>& between) {
+  const SceneSource source = as_now(given);
   const Scene scene = source.read();
   const RunMeasure measure = find_measure(measure_name, columns_of(build_model(scene)));
   if (is_whole_number(scene, key))

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include "core/diagnostics/quintic.hpp"
@@ -96,14 +95,15 @@ double EnergyMeter::damping_power(const State& state, const VectorXd& accelerati
 // rounding of coordinates over h); the smaller one is taken, and none where they disagree in sign.
 //
 // A rate that is gone long before the step's end, with most of the power, or that has come about right behind
-// its start, is not to be had from the ends: no value; what it lost is what the energies lost beyond the work
-// of others, as in an impact.
+// its start, is not to be had from the ends, nor one that a method lets ring about what it is: it lost what
+// the energies lost beyond the work of others, as in an impact, `lost`. Where that is less than nothing, or
+// more than the rates could lose, it is an error of the method, which the balance is to tell.
 //
 // Where the motion between the states has the same power, `between`, that is taken: what its interpolant is
 // off where two motions are nearly one has a power of its own. All powers are those of what stiff dampers
 // move.
-std::optional<double> EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastest,
-                                                  double between) {
+double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastest, double between,
+                                   double lost) {
   const double h = b.t - a.t, e = 1e-3 / fastest;
   // Of time itself into the step: at its ends something may begin.
   const auto rate = [&](const State& s, const VectorXd& acceleration, double inward) {
@@ -113,7 +113,10 @@ std::optional<double> EnergyMeter::taken_by_stiff(const State& a, const State& b
   constexpr double most = 10;  // times the power at the other end
   const double at_start = damping_power(a, before_.acceleration, 0),
                at_end = damping_power(b, after_.acceleration, 0);
-  if (gone_ && (at_start > most * at_end || at_end > most * at_start)) return std::nullopt;
+  const bool gone = gone_ && (at_start > most * at_end || at_end > most * at_start);
+  constexpr double by_method = 1e3;  // times rounding: what a step of a method is off all the same
+  if (gone || rings_)
+    if (lost >= -rounding_ * (gone ? by_method : 1) && lost <= h * most_power_ + rounding_) return lost;
   const double line = 0.5 * h * (at_start + at_end);
   double bend = h * h / 12 * (rate(a, before_.acceleration, e) - rate(b, after_.acceleration, -e));
   if (constexpr double too_large = 1e5; h * fastest > too_large) {
@@ -162,12 +165,14 @@ struct Rates {
   // They are others behind the start, or before the end, than there: of the time between the mean alone
   // tells. A rate that falls as exp(-c t / m) has less than a sixth of the step for it.
   bool gone() const { return 9 * off > std::max({at_a, at_b, mean}); }
+  // They change their sign from state to state.
+  bool ring() const { return 9 * mean < std::min(at_a, at_b); }
 };
-// Of a part: its rates, and those that its dampers tell from what it does as a whole, by the powers that they
-// would take of them.
+// Of a part: its rates. Of what dampers join besides: those that they tell from what it does as a whole, by
+// the powers that they would take of them.
 struct PartRates {
   bool stiff = false;
-  Rates all, damped;
+  Rates all = {}, damped = {};
 };
 
 }  // namespace
@@ -184,10 +189,11 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   const SparseRows& by_w = derivatives_.by_w.sum();
   if (parts_.empty()) parts_ = parts_of(system_), damped_ = parts_of(system_, &by_w);
   std::vector<PartRates> rates(parts_.size());
-  gone_ = false;
+  gone_ = rings_ = false;
+  most_power_ = 0;
   stiff_.setZero(a.w.size());
-  const auto of = [&](Index i) -> PartRates& {
-    return rates[static_cast<std::size_t>(parts_[static_cast<std::size_t>(i)])];
+  const auto of = [&](const std::vector<Index>& parts, Index i) -> PartRates& {
+    return rates[static_cast<std::size_t>(parts[static_cast<std::size_t>(i)])];
   };
   const auto square = [](double x) { return x * x; };
   const auto power = [&](const VectorXd& w) { return VectorXd(-w.cwiseProduct(by_w * w)); };
@@ -195,26 +201,32 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   const VectorXd of_a = power(a.w), of_b = power(b.w), of_mean = power(mean),
                  of_off = power(mean - 0.5 * (a.w + b.w));
   constexpr double of_energy = 1e-9;
-  const double rounding = of_energy / h * std::max(system_.kinetic_energy(a.w), system_.kinetic_energy(b.w));
+  rounding_ = of_energy * std::max(system_.kinetic_energy(a.w), system_.kinetic_energy(b.w));
   for (Index i = 0; i < mean.size(); ++i) {
-    PartRates& part = of(i);
+    PartRates& part = of(parts_, i);
+    Rates& damped = of(damped_, i).damped;
     part.stiff |= h * bounds[i] > stiff_at;
     if (h * bounds[i] > stiff_at) stiff_[damped_[static_cast<std::size_t>(i)]] = 1;
-    part.damped.at_a += of_a[i], part.damped.at_b += of_b[i], part.damped.mean += of_mean[i];
-    part.damped.off += of_off[i];
+    damped.at_a += of_a[i], damped.at_b += of_b[i], damped.mean += of_mean[i], damped.off += of_off[i];
     part.all.at_a += square(a.w[i]), part.all.at_b += square(b.w[i]), part.all.mean += square(mean[i]);
     part.all.off += square(mean[i] - 0.5 * (a.w[i] + b.w[i]));
   }
   for (Index i = 0; i < mean.size(); ++i) {
-    const PartRates& part = of(i);
+    const PartRates& part = of(parts_, i);
     if (!part.stiff) continue;
-    gone_ = gone_ || part.all.gone() || (part.damped.gone() && part.damped.off > rounding);
+    const Rates& damped = of(damped_, i).damped;
+    gone_ = gone_ || part.all.gone() || (damped.gone() && h * damped.off > rounding_);
+    rings_ = rings_ || (damped.ring() && h * std::min(damped.at_a, damped.at_b) > rounding_);
     if (part.all.gone()) ends.a.w[i] = ends.b.w[i] = mean[i];
     const double at_a = ends.a.w[i], at_b = ends.b.w[i];
     ends.by_a[i] = (6 * mean[i] - 4 * at_a - 2 * at_b) / h;
     ends.by_b[i] = (2 * at_a + 4 * at_b - 6 * mean[i]) / h;
   }
-  for (Index i = 0; i < mean.size(); ++i) stiff_[i] = stiff_[damped_[static_cast<std::size_t>(i)]];
+  for (Index i = 0; i < mean.size(); ++i) {
+    const Rates& damped = rates[static_cast<std::size_t>(i)].damped;  // of those that it stands for
+    most_power_ += std::max({damped.at_a, damped.at_b, damped.mean, damped.off});
+    stiff_[i] = stiff_[damped_[static_cast<std::size_t>(i)]];
+  }
   return ends;
 }
 
@@ -225,7 +237,8 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   fresh_ = true;
   last_ = b.t;
   const double h = b.t - a.t;
-  dissipated += taken(b) - taken(a);
+  const double by_friction = taken(b) - taken(a);
+  dissipated += by_friction;
   system_.follow(a);
   const double fastest = dampers_ ? damping_bound(a) : 0.0;
   const bool stiff = h * fastest > stiff_at;
@@ -267,9 +280,9 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
     drive_work -= weight * lambda_.dot(target_rate_);
   }
   if (stiff) {
-    const std::optional<double> taken = taken_by_stiff(a, b, fastest, by_stiff);
-    dissipated +=
-        taken ? taken_between - by_stiff + *taken : energy(a) - energy(b) + load_work + drive_work - others;
+    const double of_others = taken_between - by_stiff,
+                 lost = energy(a) - energy(b) + load_work + drive_work - others - by_friction - of_others;
+    dissipated += of_others + taken_by_stiff(a, b, fastest, by_stiff, lost);
   } else {
     dissipated += taken_between;
   }
@@ -311,8 +324,9 @@ void RunEnergyFlow::meter_of(const Model& model) {
 // the model's rows do not hold after it, as a winch's that a latch stops, or are, with the stops that are met
 // there, not all that acted.
 bool RunEnergyFlow::explain_impulse(const Model& rows, const State& a, const State& b, double gain) {
-  constexpr double near = 1e3;   // times what counts as touching
-  constexpr double held = 1e-4;  // of the fastest: drift of a method
+  constexpr double near = 1e3;       // times what counts as touching
+  constexpr double held = 1e-4;      // of the fastest: drift of a method
+  constexpr double rounding = 1e-8;  // of what the rate of a stop is the sum of
   const Stops stops(rows.structure);
   bool reeled = false;
   for (std::size_t i = 0; i < stops.size(); ++i) reeled = reeled || stops[i].reeled;
@@ -331,7 +345,16 @@ bool RunEnergyFlow::explain_impulse(const Model& rows, const State& a, const Sta
   for (std::size_t i = 0; i < stops.size(); ++i) {
     if (stops.gap(i, system, a) > near * stops.touching(stops[i].function)) continue;
     responses.add(stops[i].function, stops[i].sign, stops[i].near(a));
-    met.push_back(i);
+    const Index row = responses.size() - 1;
+    const double limit_before = stops[i].sign * stops[i].rate(a.t),
+                 limit_after = stops[i].sign * stops[i].rate(b.t);
+    // What was not approached and is left then has given nothing, as a cable that goes slack.
+    const double small = rounding * std::max(responses.terms(row, a.w) + std::abs(limit_before),
+                                             responses.terms(row, b.w) + std::abs(limit_after));
+    if (responses.rates(a.w)[row] >= limit_before - small && responses.rates(b.w)[row] > limit_after + small)
+      responses.leave_last();
+    else
+      met.push_back(i);
   }
   VectorXd lambda, rate(system.constraints());
   double unexplained = 0;

@@ -5,7 +5,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "core/diagnostics/drives.hpp"
@@ -61,8 +60,9 @@ class EnergyMeter {
     VectorXd by_a = {}, by_b = {};
   };
   Ends trusted_ends(const State& a, const State& b);
-  bool gone_ = false;  // in the last step of these, the rates of something
-  std::optional<double> taken_by_stiff(const State& a, const State& b, double fastest, double between);
+  bool gone_ = false, rings_ = false;     // in the last step of these, the rates of something
+  double most_power_ = 0, rounding_ = 0;  // of dampers there [W]; of energies [J]
+  double taken_by_stiff(const State& a, const State& b, double fastest, double between, double lost);
 
   System system_;  // follows the states
   bool loads_, dampers_, drives_;

@@ -21,6 +21,7 @@ double force_round_off(const Simulation& run) {
     if (rod.length > 0) shortest = std::min(shortest, rod.length);
     if (rod.gives && rod.compliance() > 0) grow(stiffness, 1 / (rod.compliance() * rod.multiplicity));
   }
+  const Index in_space = space_coordinates(structure);
   VectorXd force;
   constexpr std::size_t looked_at = 200;  // tell the sizes of a run, the last one among them
   const std::size_t every = (trajectory.size() + looked_at - 1) / looked_at;
@@ -28,16 +29,17 @@ double force_round_off(const Simulation& run) {
     const std::size_t i = left - 1;
     const System system = trajectory.model(i).system.at(trajectory.state(i));
     const VectorXd q = trajectory.node_positions(i), v = trajectory.node_velocities(i);
-    const VectorXd masses = system.node_mass().diagonal();
-    if (q.size() == 0) continue;
+    if (in_space == 0) continue;
     force.setZero(q.size());
     system.add_applied_force(trajectory.time(i), q, v, 1.0, force);
     grow(acting, force.lpNorm<Eigen::Infinity>());
+    // Rotors and drums behind the nodes turn, and are at the origin, wherever the structure stands.
+    const VectorXd masses = VectorXd(system.node_mass().diagonal()).head(in_space);
+    const auto places = q.head(in_space).reshaped(3, in_space / 3);
     grow(acting, masses.lpNorm<Eigen::Infinity>() * structure.gravity.lpNorm<Eigen::Infinity>());
-    grow(reach, q.lpNorm<Eigen::Infinity>());
-    const auto places = q.reshaped(3, q.size() / 3);
+    grow(reach, places.lpNorm<Eigen::Infinity>());
     grow(size, (places.rowwise().maxCoeff() - places.rowwise().minCoeff()).maxCoeff());
-    grow(speed, v.lpNorm<Eigen::Infinity>());
+    grow(speed, v.head(in_space).lpNorm<Eigen::Infinity>());
     grow(mass, masses.sum() / 3);
   }
   const double elapsed = trajectory.end_time() - trajectory.start_time();

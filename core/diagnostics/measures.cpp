@@ -189,7 +189,7 @@ bool every_run_has(std::string_view measure) {
   constexpr std::array names{"peak_rod_force", "peak_tension", "peak_compression", "energy",
                              "peak_energy",    "peak_speed",   "energy_error",     "constraint_error",
                              "end_time",       "cpu",          "newton_iterations"};
-  return measure.ends_with("_unique") || std::find(names.begin(), names.end(), measure) != names.end();
+  return std::find(names.begin(), names.end(), measure) != names.end();
 }
 
 // Columns that are finite in every state of every run.
@@ -250,6 +250,7 @@ bool may_be(const RunMeasure& measure, double value, bool deployed) {
   const std::size_t colon = measure.name.find(':');
   if (colon != std::string::npos)
     return std::isfinite(value) || !every_state_has(std::string_view(measure.name).substr(colon + 1));
+  if (measure.name.ends_with("_unique")) return std::isnan(value) || value == 0 || value == 1;
   return !every_run_has(measure.name) || (std::isfinite(value) && value >= 0);
 }
 

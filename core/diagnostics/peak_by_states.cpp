@@ -53,12 +53,16 @@ bool take_states(const Trajectory& states, const std::vector<double>& x, double 
 
 PeakInMotion by_states(const Simulation& run, const std::vector<double>& x, const PeakInMotion& found) {
   constexpr double many = 10, round_off = 1e-12;  // times what the outer two states change; of the value
+  constexpr double most_off = 0.01, well_known = 1e-3;  // beyond that the states have missed it
   constexpr int looks = 32;
   Points known;
   if (!take_states(run.trajectory, x, found.t, known)) return found;
   const double here = known(found.t),
                doubt = many * std::abs(here - known.through(1, all_points - 1, found.t));
-  if (found.value - here <= doubt + round_off * std::abs(here)) return found;
+  const double above = found.value - here;
+  if (above <= doubt + round_off * std::abs(here) || above > most_off * std::abs(found.value) ||
+      doubt > well_known * std::abs(here))
+    return found;
   StateForces forces(run.trajectory);
   const std::size_t before = run.trajectory.state_before(found.t);
   if (!forces.near_singular(before) && !forces.near_singular(before + 1)) return found;

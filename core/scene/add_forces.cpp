@@ -182,7 +182,7 @@ void add_winch(const SceneElement& e, ElementAdder& to) {
   }
   const double length = std::isnan(v.real("length")) ? path : v.real("length"),
                ea = v.real("axial_stiffness");
-  if (!(ea > 0) && length < path * (1 - 1e-9))
+  if (!(ea > 0) && length < path - to.find.same(*measure, path))
     return to.find.problem(e, "length",
                            "is shorter than the path of the cable at t = 0; give axial_stiffness");
   if (!(ea > 0) && v.real("damping") > 0)
@@ -235,7 +235,7 @@ void add_cable(const SceneElement& e, ElementAdder& to) {
     to.structure.forces.push_back(std::move(cable));
     return;
   }
-  if (cable.rest < path * (1 - 1e-9)) {
+  if (cable.rest < path - to.find.same(*measure, path)) {
     std::ostringstream text;
     text.precision(15);  // a number to be given
     text << "is shorter than the path of the cable at t = 0, which is " << path

@@ -360,20 +360,22 @@ void find_flat(Structure& structure, bool latches) {
   for (const Rod& rod : structure.rods) ends.insert({rod.a, rod.b});
   for (const Constraint& c : structure.constraints)
     if (c.kind == "fixed") ends.erase(c.nodes.front());
-  const auto plane_of = [&](Constraint& c, const Vec3& normal) {
+  const auto plane_of = [](const Constraint& c, const Vec3& normal) {
     return c.kind == "plane" && c.vectors.front().cross(normal).isZero(1e-12);
   };
-  const auto first = std::ranges::find_if(structure.constraints, [&](const Constraint& c) {
-    return c.kind == "plane" && ends.contains(c.nodes.front());
-  });
-  if (first == structure.constraints.end()) return;
-  const Vec3 normal = first->vectors.front();
-  const Vec3 at = structure.nodes[static_cast<std::size_t>(first->nodes.front())].position;
-  if (!FlatBy(structure, normal, at).holds(latches)) return;
-  for (Constraint& c : structure.constraints)
-    if (plane_of(c, normal)) ends.erase(c.nodes.front());
-  if (!ends.empty()) return;
-  for (Constraint& c : structure.constraints) c.symmetry = c.symmetry || plane_of(c, normal);
+  if (ends.empty()) return;
+  const int end = *ends.begin();
+  for (const Constraint& of_one : structure.constraints) {  // the plane that all ends are in
+    if (of_one.kind != "plane" || of_one.nodes.front() != end) continue;
+    const Vec3 normal = of_one.vectors.front();
+    std::set<int> others = ends;
+    for (const Constraint& c : structure.constraints)
+      if (plane_of(c, normal)) others.erase(c.nodes.front());
+    const Vec3& at = structure.nodes[static_cast<std::size_t>(end)].position;
+    if (!others.empty() || !FlatBy(structure, normal, at).holds(latches)) continue;
+    for (Constraint& c : structure.constraints) c.symmetry = c.symmetry || plane_of(c, normal);
+    return;
+  }
 }
 
 void refuse_endless_runs(const Scene& scene, const Model& model) {

@@ -168,7 +168,7 @@ void add_clearance(const SceneElement& e, ElementAdder& to) {
   measure.nodes = to.find.nodes(e, false);
   if (measure.nodes.size() != 2) return;
   const double clearance = e.values.real("clearance"), initial = to.find.initial(measure);
-  if (initial > clearance * (1 + 1e-9)) {
+  if (initial > clearance + to.find.same(measure, clearance)) {
     std::ostringstream text;
     text.precision(15);
     text << "is passed already at t = 0, where the nodes are " << initial << " m apart";

@@ -184,9 +184,14 @@ class Change {
     VectorXd of_rates(count());
     for (Index r = 0; r < count(); ++r) of_rates[r] = rate_rounding * sides_.fastest(side(r), out_.state);
     auto impulses = solve_box(D_, b, low, high, of_rates);
-    if (!impulses) {  // they throw it at each other
-      for (const std::vector<Index>& rows : joined_rows(D_))
+    if (!impulses) {               // they throw it at each other
+      std::vector<Index> pushing;  // friction gives no impulses, and passes none on
+      for (Index r = 0; r < count(); ++r)
+        if (high[r] > 0) pushing.push_back(r);
+      for (std::vector<Index>& rows : joined_rows(D_(pushing, pushing))) {
+        for (Index& r : rows) r = pushing[static_cast<std::size_t>(r)];
         if (!solve_box(D_(rows, rows), b(rows), low(rows), high(rows), of_rates(rows))) b(rows) = u(rows);
+      }
       impulses = solve_box(D_, b, low, high, of_rates);
     }
     if (!impulses) return fail_at(std::find(struck_.begin(), struck_.end(), true) - struck_.begin());
@@ -196,7 +201,7 @@ class Change {
     const VectorXd after = responses.rates(out_.state.w);
     for (Index r = 0; r < count(); ++r)
       if (struck_[static_cast<std::size_t>(r)])
-        out_.impacts.push_back({side(r), -0.5 * impulses->x[r] * (u[r] + after[r])});
+        out_.impacts.push_back({side(r), -0.5 * impulses->x[r] * (u[r] + after[r]), sides_.active(side(r))});
     return true;
   }
 

@@ -56,6 +56,10 @@ VectorXd PushResponses::rates(const VectorXd& w) const {
   return out;
 }
 
+double PushResponses::terms(Index i, const VectorXd& w) const {
+  return rows_[static_cast<std::size_t>(i)].n.cwiseAbs().dot(w.cwiseAbs());
+}
+
 double PushResponses::taken(Index i, const VectorXd& w) const {
   const Row& row = rows_[static_cast<std::size_t>(i)];
   const double rate = rates(w)[i];
@@ -105,14 +109,15 @@ PushResponses::Accelerations PushResponses::accelerations(const Structure& struc
   system_.expand_rate(state.w, v);
   const VectorXd sizes = force_sizes(system_, structure, state, lambda);
   const double largest = lambda.size() > 0 ? lambda.lpNorm<Eigen::Infinity>() : 0.0;
+  const double fastest = acceleration.size() > 0 ? acceleration.lpNorm<Eigen::Infinity>() : 0.0;
   Accelerations out{VectorXd(size()), VectorXd(size()), VectorXd(size()), largest};
   for (Index i = 0; i < size(); ++i) {
     const Row& row = rows_[static_cast<std::size_t>(i)];
     const double curvature = row.measure->curvature_along(q_.data(), v.data());
     out.value[i] = row.n.dot(acceleration) + row.sign * (curvature - row.limit.acceleration);
-    out.of_coordinates[i] = row.n.cwiseAbs().dot(acceleration.cwiseAbs());
-    out.terms[i] = row.a.cwiseAbs().dot(sizes) + out.of_coordinates[i] + std::abs(curvature) +
-                   std::abs(row.limit.acceleration);
+    out.of_coordinates[i] = row.n.lpNorm<1>() * fastest;
+    out.terms[i] = row.a.cwiseAbs().dot(sizes) + row.n.cwiseAbs().dot(acceleration.cwiseAbs()) +
+                   std::abs(curvature) + std::abs(row.limit.acceleration);
   }
   return out;
 }

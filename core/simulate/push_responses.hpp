@@ -22,9 +22,11 @@ class PushResponses {
   void add(const MeasureFunction& s, double sign, double near, const LimitMotion& limit = {});
 
   Index size() const { return static_cast<Index>(rows_.size()); }
-  MatrixXd matrix() const;                  // D
-  bool movable(Index i) const;              // by any push along it, as far as rounding tells
-  VectorXd rates(const VectorXd& w) const;  // sign_i s_i'
+  MatrixXd matrix() const;                         // D
+  bool movable(Index i) const;                     // by any push along it, as far as rounding tells
+  VectorXd rates(const VectorXd& w) const;         // sign_i s_i'
+  double terms(Index i, const VectorXd& w) const;  // what that is the sum of, in magnitude
+  void leave_last() { rows_.pop_back(); }
   // Of the kinetic energy of rates w what an impulse along measure i takes when it stops that: 1 where
   // nothing else can move, as all rates follow from one.
   double taken(Index i, const VectorXd& w) const;
@@ -37,7 +39,7 @@ class PushResponses {
   // of several the least; `unexplained`: the share of dw that none do, in the mass metric.
   VectorXd impulses_of(const VectorXd& dw, VectorXd& lambda, double& unexplained) const;
   // sign_i s_i'' of a state at that pose, by the system's own forces; empty where they have no solution. With
-  // the size of what each is the sum of, and of the coordinates' accelerations alone.
+  // the size of what each is the sum of, and what it is where all coordinates are accelerated as the fastest.
   struct Accelerations {
     VectorXd value, terms, of_coordinates;
     double largest_multiplier = 0.0;  // of what holds there [N]

@@ -374,7 +374,9 @@ class Stepper::Loop {
   }
 
   void record(const ModeChange& change) {
-    for (const auto& [stop, energy_lost] : change.impacts) {
+    for (const auto& [stop, energy_lost, held] : change.impacts) {
+      // A taut cable whose reel takes up speed: a drive's work.
+      if (held && sides_.active(stop) && sides_.stops()[stop].reeled) continue;
       Event event = sides_.events(stop, change.state.t).front();
       if (!sides_.active(stop)) event.name = "stop " + event.element;
       event.kind = "contact";

@@ -42,7 +42,7 @@ TimeGrid::Target TimeGrid::cut(double now, Target target) const {
   const double near = together * step_;
   auto edge = std::upper_bound(edges_.begin(), edges_.end(), now,
                                [](double t, const TimeEdge& e) { return t < e.t; });
-  for (; edge != edges_.end() && edge->t < target.t + near; ++edge) {
+  for (; edge != edges_.end() && edge->t <= target.t + near; ++edge) {
     if (edge->jump ? edge->t > end_ : edge->t >= end_ - near) break;
     if (edge->jump) {
       const double before = before_jump(edge->t);

@@ -76,8 +76,10 @@ double TimeFunction::derivative(int order, double t) const {
 
 bool make_jumps(TimeFunction& f, double near) {
   if (f.kind == TimeFunction::Kind::rate && f.ramp < near) {
+    constexpr double at_once = 0.01;  // of that: no step ends between the start and that time
     f.start += 0.5 * f.ramp;
     f.ramp = 0;
+    if (std::abs(f.start) <= at_once * near) f.start = 0;
   }
   if (f.kind != TimeFunction::Kind::linear) return true;
   constexpr double short_of = 1e3;  // times a flank: what loses a part of itself where the flank moves

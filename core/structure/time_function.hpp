@@ -36,8 +36,9 @@ struct TimeFunction {
 };
 
 // Two points of a linear function nearer than this to each other become a jump between them, where the
-// integral over both and their neighbours stays what it was; a ramp of a rate as short is none. False where
-// that is nowhere and a neighbour is as near as makes it matter, or where three points are that near.
+// integral over both and their neighbours stays what it was; a ramp of a rate as short is none, and what
+// begins within a hundredth of that begins at t = 0. False where that is nowhere and a neighbour is as near
+// as makes it matter, or where three points are that near.
 bool make_jumps(TimeFunction& f, double near);
 
 // times ascending, at least two; as many values.

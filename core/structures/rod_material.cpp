@@ -171,8 +171,8 @@ void note_idle_material(Structure& structure, const RodMaterial& material) {
 namespace {
 
 // Told the ends of what a constraint holds a node between, and that node: the middle of two nodes, or a point
-// on the line through them, however it is written. It stands there: one of a single coordinate may tie what
-// is far.
+// on the line through them, however it is written. It stands there, as places are rounded: one of a single
+// coordinate may tie what is far.
 template <class Visit>
 void for_each_pin_between(const Structure& structure, const Visit& visit) {
   const auto at = [&](int node) -> const Vec3& {
@@ -185,7 +185,7 @@ void for_each_pin_between(const Structure& structure, const Visit& visit) {
     const auto on = [&](std::size_t a, std::size_t b, const Vec3& there) {
       const Vec3 along = at(n[b]) - at(n[a]), from = there - at(n[a]);
       const double u = std::clamp(from.dot(along) / along.squaredNorm(), 0.0, 1.0);
-      return structure.sectors > 1 || (from - u * along).norm() <= 1e-6 * along.norm();
+      return structure.sectors > 1 || (from - u * along).norm() <= 1e-3 * along.norm();
     };
     const auto crossing = [&](std::size_t a, std::size_t b) {
       const double of_a = c.vectors[a].norm(), of_b = c.vectors[b].norm();

@@ -106,8 +106,12 @@ FrameOverlay::Parts FrameOverlay::wanted() const {
 }
 
 void FrameOverlay::add(double t, const VectorXd& whole, DrawList& list) const {
+  const std::size_t first = list.labels.size();
   if (look_.dimensions || style_.options.dimensions) add_dimensions(whole, list);
-  add_names(whole, write(t, whole, wanted(), list), list);
+  const std::size_t numbers = list.labels.size();
+  std::vector<Piece> written = write(t, whole, wanted(), list);
+  for (std::size_t k = first; k < numbers; ++k) written.push_back({Part::scale_bar, box_of(list.labels[k])});
+  add_names(whole, written, list);
 }
 
 double FrameOverlay::heading_bottom() const {
@@ -138,6 +142,13 @@ std::vector<FrameOverlay::Piece> FrameOverlay::write(double t, const VectorXd& w
   }
 }
 
+FrameOverlay::Box FrameOverlay::box_of(const TextLabel& l) {
+  const auto wide =
+      static_cast<float>(plot::text_width(l.text, static_cast<double>(l.height) / plot::line_height));
+  const float x = l.x - l.align * wide;
+  return {x, l.y, x + wide, l.y + l.height};
+}
+
 std::vector<FrameOverlay::Piece> FrameOverlay::write_all(double t, const VectorXd& whole, const Parts& wanted,
                                                          DrawList& list) const {
   std::vector<Piece> pieces;
@@ -145,13 +156,7 @@ std::vector<FrameOverlay::Piece> FrameOverlay::write_all(double t, const VectorX
   Boxes taken;
   const auto placed = [&](Part part) {
     for (; boxes < taken.size(); ++boxes) pieces.push_back({part, taken[boxes]});
-    for (; labels < list.labels.size(); ++labels) {
-      const TextLabel& l = list.labels[labels];
-      const auto wide =
-          static_cast<float>(plot::text_width(l.text, static_cast<double>(l.height) / plot::line_height));
-      const float x = l.x - l.align * wide;
-      pieces.push_back({part, {x, l.y, x + wide, l.y + l.height}});
-    }
+    for (; labels < list.labels.size(); ++labels) pieces.push_back({part, box_of(list.labels[labels])});
   };
   const auto add = [&](Part part, const auto& draw) {
     if (!wanted.contains(part)) return;

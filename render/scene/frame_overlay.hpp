@@ -97,6 +97,7 @@ class FrameOverlay {
   float number_place(const Eigen::Vector2f& p, const Eigen::Vector2f& q, const Eigen::Vector2f& half,
                      const DrawList& list) const;
   void add_dimension(const Vec3& a, const Vec3& b, const Vec3& away, DrawList& list) const;
+  static Box box_of(const TextLabel& label);
   void add_names(const VectorXd& whole, const std::vector<Piece>& written, DrawList& list) const;
   void add_name(const std::string& name, const Vec3& at, std::vector<Box>& taken, DrawList& list) const;
   void add_inset(double t, DrawList& list) const;

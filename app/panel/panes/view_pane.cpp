@@ -32,7 +32,7 @@ void steer(PanelState& state, const SceneView& view, const Frame& frame) {
   }
   if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
     const Vec3f along = ray_through(view.camera(state), frame.x(), frame.y(), frame.size.x, frame.size.y);
-    state.orbit = zoomed(now, io.MouseWheel, along);
+    state.orbit = zoomed(now, io.MouseWheel, along, view.radius());
   }
 }
 

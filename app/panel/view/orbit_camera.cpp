@@ -56,9 +56,11 @@ OrbitCamera panned(OrbitCamera orbit, float dx, float dy, float height) {
   return orbit;
 }
 
-OrbitCamera zoomed(OrbitCamera orbit, float steps, const Vec3f& along) {
+OrbitCamera zoomed(OrbitCamera orbit, float steps, const Vec3f& along, float radius) {
+  constexpr float range = 1e4f;
   const float before = orbit.distance;
-  orbit.distance = std::clamp(before * std::exp(-0.12f * steps), 1e-15f, 1e15f);  // so that it leads back
+  orbit.distance = std::clamp(before * std::exp(-0.12f * steps), std::min(radius / range, before),
+                              std::max(radius * range, before));
   const Vec3f forward = -direction(orbit);
   const float depth = along.dot(forward);
   if (depth > 0.1f) orbit.target += (before - orbit.distance) * (along / depth - forward);

@@ -25,7 +25,8 @@ Camera camera_of(const OrbitCamera& orbit, const Vec3f& center, float radius);
 OrbitCamera orbited(OrbitCamera orbit, float dx, float dy, float height);
 OrbitCamera panned(OrbitCamera orbit, float dx, float dy, float height);
 // Nearer by steps of the wheel; `along` (unit) is the direction under the pointer, which stays where it is.
-OrbitCamera zoomed(OrbitCamera orbit, float steps, const Vec3f& along);
+// So that the way leads back, no farther than floats tell a structure of that radius.
+OrbitCamera zoomed(OrbitCamera orbit, float steps, const Vec3f& along, float radius);
 // The direction of a preset; sees a sphere whole.
 OrbitCamera preset_view(ViewPreset preset, const Vec3f& center, float radius, float aspect,
                         float field_of_view);

@@ -61,7 +61,7 @@ TEST_CASE("zooming keeps what is under the pointer there") {
   const Vec3f ray = ray_through(camera, 700, 150, 800, 600);
   const Vec3f forward = (camera.target - camera.eye).normalized();
   const Vec3f point = camera.eye + ray * (before.distance / ray.dot(forward));
-  const Vec3f at = project(camera_of(zoomed(before, 3, ray), Vec3f::Zero(), 1), 800, 600, point);
+  const Vec3f at = project(camera_of(zoomed(before, 3, ray, 1), Vec3f::Zero(), 1), 800, 600, point);
   CHECK(at.x() == Approx(700).margin(0.05));
   CHECK(at.y() == Approx(150).margin(0.05));
 }
@@ -73,14 +73,19 @@ TEST_CASE("the wheel comes nearer and goes away at every size of a structure") {
     orbit.distance = 3 * size;
     const Camera camera = camera_of(orbit, Vec3f::Zero(), size);
     const Vec3f ahead = (camera.target - camera.eye).normalized();
-    CHECK(zoomed(orbit, 1, ahead).distance == Approx(orbit.distance * std::exp(-0.12f)).epsilon(1e-5));
-    CHECK(zoomed(orbit, -1, ahead).distance == Approx(orbit.distance * std::exp(0.12f)).epsilon(1e-5));
-    // As far as it goes, and back: a thousand steps and more are some 1e52 of either.
-    OrbitCamera far = zoomed(orbit, -2000, ahead);
-    CHECK(std::isfinite(far.distance));
-    for (int steps = 0; steps < 2000 && far.distance > orbit.distance; ++steps) far = zoomed(far, 1, ahead);
+    CHECK(zoomed(orbit, 1, ahead, size).distance == Approx(orbit.distance * std::exp(-0.12f)).epsilon(1e-5));
+    CHECK(zoomed(orbit, -1, ahead, size).distance == Approx(orbit.distance * std::exp(0.12f)).epsilon(1e-5));
+    // As far as it goes, and back, wherever the pointer is.
+    const Vec3f aside = ray_through(camera, 780, 20, 800, 600);
+    OrbitCamera far = orbit;
+    for (int steps = 0; steps < 1000; ++steps) far = zoomed(far, -1, aside, size);
+    CHECK(far.distance > 1e3f * size);
+    CHECK(far.distance < 1e5f * size);
+    for (int steps = 0; steps < 1000 && far.distance > orbit.distance; ++steps)
+      far = zoomed(far, 1, aside, size);
     CHECK(far.distance == Approx(orbit.distance).epsilon(0.13));
-    CHECK(zoomed(zoomed(orbit, 2000, ahead), -1, ahead).distance > 1.1e-15f);
+    CHECK((far.target - orbit.target).norm() < 0.6f * size);  // the last step is not the whole of one
+    CHECK(zoomed(zoomed(orbit, 2000, ahead, size), -1, ahead, size).distance > 1.1e-5f * size);
   }
 }
 

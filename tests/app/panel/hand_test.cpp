@@ -163,7 +163,7 @@ TEST_CASE("Build is of the start: it is framed, every node is seen, and the time
   CHECK(at.y() > view.y0 + 20);
   CHECK(at.y() < view.y1 - 20);
   const Image built = driver.picture();
-  const OrbitCamera led = zoomed(begun, 0.01f, {0, 0, 0});  // by hand: it stays
+  const OrbitCamera led = zoomed(begun, 0.01f, {0, 0, 0}, 1);  // by hand: it stays
   driver.state().orbit = led;
   driver.state().tool = Tool::read;
   driver.settle();

@@ -96,7 +96,8 @@ TEST_CASE("small forces are no rounding", "[diagnostics]") {
 }
 
 // In map coordinates, 5000 km from the origin, a node's place is known to 1 nm: an elastic tie of 2e9 N/m
-// that rests under 100 N, and one of 0.1 m that 1 N accelerates.
+// that rests under 100 N, alone or beside a rotor, which is at the origin, and one of 0.1 m that 1 N
+// accelerates.
 TEST_CASE("forces of structures in map coordinates are no rounding", "[diagnostics]") {
   const std::string tie = R"(
 nodes = [{name = "A", position = [5e5, 5e6, 0], fixed = true}, {name = "B", position = [500001, 5e6, 0], mass = 10}]
@@ -122,7 +123,18 @@ force = [1, 0, 0]
 end_time = 1e-4
 step = 1e-6
 )";
-  for (const auto& [scene, force] : {std::pair(tie, 100.0), std::pair(rigid, 1.0)}) {
+  const std::string rotor = R"([[forces]]
+kind = "motor"
+nodes = ["A", "B", "A", "C"]
+axis = [0, 0, 1]
+stall_torque = 1e-6
+no_load_speed = 100
+inertia = 0.01
+)";
+  std::string beside = tie;
+  beside.insert(beside.find("]\nrods"), ", {name = \"C\", position = [500000, 5000001, 0], fixed = true}");
+  for (const auto& [scene, force] :
+       {std::pair(tie, 100.0), std::pair(beside + rotor, 100.0), std::pair(rigid, 1.0)}) {
     const Simulation run = testing::run_scene("[structure]\nkind = 'custom'" + scene);
     const Diagnostics d = diagnose(run);
     CAPTURE(force, force_round_off(run));

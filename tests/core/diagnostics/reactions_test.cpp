@@ -219,6 +219,10 @@ TEST_CASE("planes that say that a structure is flat, and the rotor of a motor, a
   CHECK(supports(testing::model_of(flat("['A', 'B']"))->structure) == std::vector<int>{0});
   CHECK(supports(testing::model_of(flat("['B']"))->structure) == std::vector<int>{0, 2});
   CHECK(supports(testing::model_of(flat("['A', 'B']", 0.7))->structure) == std::vector<int>{0});
+  // Whatever plane stands before it.
+  const std::string guide = "[[structure.constraints]]\nkind = 'plane'\nnodes = ['A']\nnormal = [1, 0, 0]\n";
+  CHECK(supports(testing::model_of(guide + flat("['A', 'B']"))->structure) == std::vector<int>{0, 1});
+  CHECK(supports(testing::model_of(flat("['A', 'B']") + guide)->structure) == std::vector<int>{0, 1});
   const std::vector<std::string> along{"loads=[{nodes=['B'],force=[3,0,-2]}]"};
   CHECK(supports(testing::model_of(flat("['A', 'B']"), along)->structure) == std::vector<int>{0});
   for (const std::string across :

@@ -37,6 +37,20 @@ end_time = 1
 
 }  // namespace
 
+// 5000 km from the origin places are 1 nm apart: 30 mm are 30.00000026.
+TEST_CASE("a pin at the rim in map coordinates has not passed it") {
+  for (const char* kind : {"clearance", "length_stop", "cable"}) {
+    CAPTURE(kind);
+    const std::string key = kind == std::string("clearance") ? "clearance"
+                            : kind == std::string("cable")   ? "length"
+                                                             : "max";
+    CHECK(
+        error_of("[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = [5e6, 0, 0], fixed = true}, "
+                 "{name = 'A', position = [5000000.03, 0, 0], mass = 1}]\n[[constraints]]\nkind = '" +
+                 std::string(kind) + "'\nnodes = ['O', 'A']\n" + key + " = 0.03\n") == "");
+  }
+}
+
 TEST_CASE("a pin that begins in the middle of its hole bounces on the rim in a geometric series") {
   // 0.2 m at 10 m/s^2: 0.2 s to the rim, then flights of 0.2, 0.1, 0.05, ... s: at rest after 0.6 s.
   for (const Method& method : methods()) {

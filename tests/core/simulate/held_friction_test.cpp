@@ -229,4 +229,23 @@ end_time = 0.7
   }
 }
 
+// A node on two rods from a line turns about that line, along which no force moves it: what rubs along it
+// rests, and gives nothing, whatever rounding leaves of its acceleration.
+TEST_CASE("friction along what cannot move does not slip by rounding") {
+  for (const double along : {0.2, 0.6822, 1.0})
+    for (const double load : {-19.3389, 3.0, 4e3}) {
+      CAPTURE(along, load);
+      const std::string scene =
+          "[structure]\nkind = 'custom'\n" + node("P0", 0, 0, "fixed = true") +
+          node("D", 1.2, 0, "fixed = true") + node("P1", along, 0.5164, "mass = 1\nvelocity = [0, 0.3, 0]") +
+          rod("P0", "P1", 0.7) + rod("D", "P1", 0.5) + "[[loads]]\nnodes = ['P1']\nforce = [" + number(load) +
+          ", 0, 0]\n[gravity]\nacceleration = [0, 1, -9.81]\n[solver]\nend_time = 0.1\n";
+      const Diagnostics without = diagnose(run_scene(scene)),
+                        with = diagnose(run_scene(
+                            scene, {"forces[0]={kind='friction',nodes=['P1'],direction=[1,0,0],kinetic=5}"}));
+      CHECK((with.axial_force - without.axial_force).cwiseAbs().maxCoeff() <=
+            1e-9 * without.axial_force.cwiseAbs().maxCoeff());
+    }
+}
+
 }  // namespace held_friction_test

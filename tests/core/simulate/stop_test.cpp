@@ -380,10 +380,10 @@ step = )" + std::string(step) + "\n");
 }
 
 // P cannot move between a and b, which it is thrown at; R is joined to nothing and meets its own stop at that
-// time, with restitution 1: back it goes as fast.
+// time, with restitution 1: back it goes as fast, whatever rubs between both.
 TEST_CASE("a blow between two stops without room is none of another stop's that is met then") {
-  for (const char* speed : {"0", "0.41"}) {
-    CAPTURE(speed);
+  for (const auto& [speed, friction] : {std::pair("0", 0.0), {"0.41", 0.0}, {"0.41", 1e-6}}) {
+    CAPTURE(speed, friction);
     const Simulation run = testing::run_scene(R"([structure]
 kind = "custom"
 rods = []
@@ -413,6 +413,10 @@ nodes = ["R"]
 direction = [1, 0, 0]
 restitution = 1
 min = 5
+[[forces]]
+kind = "friction"
+nodes = ["P", "R"]
+kinetic = )" + number(friction) + R"(
 [solver]
 end_time = 0.1
 step = 0.01

@@ -278,6 +278,9 @@ rods = [{nodes = ["A", "B"], density = 2700, area = 1e-4, segments = )") +
       said = said || note.find("1 rod with pins between the ends") != std::string::npos;
     CHECK(said);
   }
+  // Places may be given in five digits.
+  const std::vector<std::string> rounded{"structure.nodes.P.position=[1, 0, 3e-5]"};
+  CHECK_THAT(testing::error_of(beam(holds[0], "4"), rounded), Catch::Contains("cannot be cut"));
   // A relation of one coordinate may tie what stands beside the rod.
   const std::string aside =
       "kind = 'relation'\nnodes = ['A', 'B', 'Q']\ncoefficients = [0.5, 0, 0, 0.5, 0, 0, -1, 0, 0]\n";

@@ -316,6 +316,15 @@ TEST_CASE("rows of a sweep that no run leaves are not finished") {
   }
 }
 
+// Whether a margin is unique is no question where no rod has one.
+TEST_CASE("what has no value is unique or not, or has no such value either") {
+  SweepPlan plan = ring_plan();
+  plan.measures = {find_measure("peak_stress"), find_measure("peak_stress_unique")};
+  for (const char* unique : {"0", "1", "nan"}) CHECK(plan.is_finished({"40", "deployed", "nan", unique}));
+  for (const char* damaged : {"0.5", "-1", "inf"})
+    CHECK_FALSE(plan.is_finished({"40", "deployed", "nan", damaged}));
+}
+
 TEST_CASE("unknown measures and keys are named") {
   CHECK_THROWS_WITH(find_measure("deploytime"), Catch::Contains("did you mean 'deploy_time'"));
   CHECK_THROWS_WITH(find_measure("max:kinetic_energy"), Catch::Contains("did you mean 'kinetic_energy_J'"));

@@ -63,28 +63,32 @@ solver.end_time = 2
 TEST_CASE("names of nodes and rods lie on nothing else that is written") {
   const std::string structure =
       "title = 'A ring'\nstructure.kind = 'hoop'\nstructure.fold_angle = 85.0\nsolver.end_time = 3.0\n";
-  const std::string others = "scale_bar = true\naxes = true\nlegend = true\ninset = 'energy_balance_J'\n";
-  const DrawList plain = picture(structure, others),
-                 named = picture(structure, others + "node_labels = true\nrod_labels = true\n");
-  std::set<std::string> before;
-  for (const TextLabel& l : plain.labels) before.insert(l.text);
-  int names = 0;
-  for (const TextLabel& l : named.labels) {
-    if (before.contains(l.text)) continue;
-    ++names;
-    const auto wide = static_cast<float>(plot::text_width(l.text, static_cast<double>(l.height))) / 2;
-    CAPTURE(l.text);
-    const Inset& in = named.inset;
-    CHECK((l.x + wide < in.x || l.x - wide > in.x + in.width || l.y + l.height < in.y ||
-           l.y > in.y + in.height));
-    for (const TextLabel& other : plain.labels) {
-      const auto room = static_cast<float>(
-          plot::text_width(other.text, static_cast<double>(other.height) / plot::line_height));
-      const float left = other.x - other.align * room;
-      CHECK((!overlap(l, other) || l.x + 0.8f * wide < left || l.x - 0.8f * wide > left + room));
+  for (const char* dimensions : {"false", "true"}) {
+    const std::string others =
+        "scale_bar = true\naxes = true\nlegend = true\ninset = 'energy_balance_J'\ndimensions = " +
+        std::string(dimensions) + "\n";
+    const DrawList plain = picture(structure, others),
+                   named = picture(structure, others + "node_labels = true\nrod_labels = true\n");
+    std::set<std::string> before;
+    for (const TextLabel& l : plain.labels) before.insert(l.text);
+    int names = 0;
+    for (const TextLabel& l : named.labels) {
+      if (before.contains(l.text)) continue;
+      ++names;
+      const auto wide = static_cast<float>(plot::text_width(l.text, static_cast<double>(l.height))) / 2;
+      CAPTURE(l.text);
+      const Inset& in = named.inset;
+      CHECK((l.x + wide < in.x || l.x - wide > in.x + in.width || l.y + l.height < in.y ||
+             l.y > in.y + in.height));
+      for (const TextLabel& other : plain.labels) {
+        const auto room = static_cast<float>(
+            plot::text_width(other.text, static_cast<double>(other.height) / plot::line_height));
+        const float left = other.x - other.align * room;
+        CHECK((!overlap(l, other) || l.x + 0.8f * wide < left || l.x - 0.8f * wide > left + room));
+      }
     }
+    CHECK(names > 20);  // of 12 nodes and 24 rods
   }
-  CHECK(names > 20);  // of 12 nodes and 24 rods
 }
 
 }  // namespace overlay_names_test
