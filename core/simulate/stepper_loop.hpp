@@ -237,7 +237,7 @@ class Stepper::Loop {
     ModeChange change = modes_after(hand_over(model(), before, *base_).state);
     if (change.failure.empty() && !change.changed && change.impacts.empty())
       return append_after_impulse(hand_over(*base_, change.state, model()).state), true;
-    return apply(std::move(change));
+    return apply(change);
   }
 
   // --- steps ---
@@ -307,7 +307,7 @@ class Stepper::Loop {
     // What drives or pushes may begin with nothing: a moment later it is seen what must give way to it.
     if (change.failure.empty() && !change.changed && change.impacts.empty())
       change = modes_after(in_base(now()), which, left, stepping::moment * run_.options.step);
-    return apply(std::move(change));
+    return apply(change);
   }
 
   // Stops that are touched from the start, none of which is approached then.
@@ -358,7 +358,7 @@ class Stepper::Loop {
   }
 
   // Goes on in the modes that were found. False where there are none.
-  bool apply(ModeChange change) {
+  bool apply(const ModeChange& change) {
     if (!change.failure.empty()) return fail(change.failure);
     record(change);
     for (const std::size_t i : change.turned)
