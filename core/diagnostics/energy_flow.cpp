@@ -326,7 +326,7 @@ void RunEnergyFlow::meter_of(const Model& model) {
 bool RunEnergyFlow::explain_impulse(const Model& rows, const State& a, const State& b, double gain) {
   constexpr double near = 1e3;       // times what counts as touching
   constexpr double held = 1e-4;      // of the fastest: drift of a method
-  constexpr double rounding = 1e-8;  // of what the rate of a stop is the sum of
+  constexpr double rounding = 1e-8;  // of what the rate of a stop may be
   const Stops stops(rows.structure);
   bool reeled = false;
   for (std::size_t i = 0; i < stops.size(); ++i) reeled = reeled || stops[i].reeled;
@@ -349,8 +349,8 @@ bool RunEnergyFlow::explain_impulse(const Model& rows, const State& a, const Sta
     const double limit_before = stops[i].sign * stops[i].rate(a.t),
                  limit_after = stops[i].sign * stops[i].rate(b.t);
     // What was not approached and is left then has given nothing, as a cable that goes slack.
-    const double small = rounding * std::max(responses.terms(row, a.w) + std::abs(limit_before),
-                                             responses.terms(row, b.w) + std::abs(limit_after));
+    const double small = rounding * std::max(responses.at_most(row, a.w) + std::abs(limit_before),
+                                             responses.at_most(row, b.w) + std::abs(limit_after));
     if (responses.rates(a.w)[row] >= limit_before - small && responses.rates(b.w)[row] > limit_after + small)
       responses.leave_last();
     else

@@ -56,8 +56,8 @@ VectorXd PushResponses::rates(const VectorXd& w) const {
   return out;
 }
 
-double PushResponses::terms(Index i, const VectorXd& w) const {
-  return rows_[static_cast<std::size_t>(i)].n.cwiseAbs().dot(w.cwiseAbs());
+double PushResponses::at_most(Index i, const VectorXd& w) const {
+  return w.size() > 0 ? rows_[static_cast<std::size_t>(i)].n.lpNorm<1>() * w.lpNorm<Eigen::Infinity>() : 0.0;
 }
 
 double PushResponses::taken(Index i, const VectorXd& w) const {

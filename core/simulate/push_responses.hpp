@@ -22,10 +22,10 @@ class PushResponses {
   void add(const MeasureFunction& s, double sign, double near, const LimitMotion& limit = {});
 
   Index size() const { return static_cast<Index>(rows_.size()); }
-  MatrixXd matrix() const;                         // D
-  bool movable(Index i) const;                     // by any push along it, as far as rounding tells
-  VectorXd rates(const VectorXd& w) const;         // sign_i s_i'
-  double terms(Index i, const VectorXd& w) const;  // what that is the sum of, in magnitude
+  MatrixXd matrix() const;                           // D
+  bool movable(Index i) const;                       // by any push along it, as far as rounding tells
+  VectorXd rates(const VectorXd& w) const;           // sign_i s_i'
+  double at_most(Index i, const VectorXd& w) const;  // that, were all rates as the fastest
   void leave_last() { rows_.pop_back(); }
   // Of the kinetic energy of rates w what an impulse along measure i takes when it stops that: 1 where
   // nothing else can move, as all rates follow from one.

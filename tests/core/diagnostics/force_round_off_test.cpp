@@ -125,7 +125,7 @@ step = 1e-6
 )";
   const std::string rotor = R"([[forces]]
 kind = "motor"
-nodes = ["A", "B", "A", "C"]
+nodes = ["C", "A", "B"]
 axis = [0, 0, 1]
 stall_torque = 1e-6
 no_load_speed = 100
