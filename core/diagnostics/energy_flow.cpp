@@ -390,9 +390,14 @@ void RunEnergyFlow::step_to(std::size_t i, StateForces* forces) {
     const System& before = trajectory_.model(i - 1).system;
     const double gain = model.system.kinetic_energy(b.w) - before.kinetic_energy(a.w);
     const Model& by = trajectory_.model(i - 1);
+    const bool strikes = !by.structure.stops.empty() || !by.structure.deployment.empty();
     if (!explain_impulse(by, a, in_coordinates(model.system, b, before), gain) &&
-        !explain_impulse(model, in_coordinates(before, a, model.system), b, gain))
-      (b.t > a.t ? flow_.drive_work : flow_.impact_loss).back() += b.t > a.t ? gain : -gain;
+        !explain_impulse(model, in_coordinates(before, a, model.system), b, gain)) {
+      if (b.t > a.t)
+        flow_.drive_work.back() += gain;
+      else if (strikes)  // else an error, which the balance is to tell
+        flow_.impact_loss.back() -= gain;
+    }
     flow_.load_work.back() -= other_loads(before, model.system, b.z);
     if (meter_) meter_->jump();
     return;

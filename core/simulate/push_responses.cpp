@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/push_responses.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/integrators/index1.hpp"
@@ -24,7 +25,13 @@ void PushResponses::add(const MeasureFunction& s, double sign, double near, cons
   for (std::size_t k = 0; k < stencil.size(); ++k)
     node_force[stencil[k]] += sign * gradient[static_cast<Index>(k)];
   const Index n = system_.solved_coordinates();
-  Row row{&s, sign, VectorXd(n), VectorXd(n), VectorXd(system_.constraints()), limit};
+  Row row{.measure = &s,
+          .sign = sign,
+          .n = VectorXd(n),
+          .a = VectorXd(n),
+          .mu = VectorXd(system_.constraints()),
+          .size = node_force.size() > 0 ? node_force.lpNorm<Eigen::Infinity>() : 0.0,
+          .limit = limit};
   system_.reduce_force(node_force, row.n);
   saddle_.solve(row.n, VectorXd::Zero(row.mu.size()), row.a, row.mu);
   rows_.push_back(std::move(row));
@@ -43,8 +50,8 @@ MatrixXd PushResponses::matrix() const {
 bool PushResponses::movable(Index i) const {
   const Row& row = rows_[static_cast<std::size_t>(i)];
   if (row.n.size() == 0) return false;
-  const double free = row.n.cwiseAbs2().maxCoeff() / system_.mass().diagonal().maxCoeff();
-  return row.n.dot(row.a) > 1e-12 * free;
+  const double most = std::max(row.size, row.n.lpNorm<Eigen::Infinity>());
+  return row.n.dot(row.a) > 1e-12 * most * most / system_.mass().diagonal().maxCoeff();
 }
 
 VectorXd PushResponses::rates(const VectorXd& w) const {
@@ -97,7 +104,8 @@ VectorXd PushResponses::impulses_of(const VectorXd& dw, VectorXd& lambda, double
 
 double PushResponses::spread(Index i) const {
   const Row& row = rows_[static_cast<std::size_t>(i)];
-  return row.n.lpNorm<Eigen::Infinity>() * row.a.lpNorm<Eigen::Infinity>() / row.n.dot(row.a);
+  return std::max(row.size, row.n.lpNorm<Eigen::Infinity>()) * row.a.lpNorm<Eigen::Infinity>() /
+         row.n.dot(row.a);
 }
 
 // n . w' = a . F + ..., and by what rounds in F it is off.

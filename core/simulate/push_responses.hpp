@@ -51,6 +51,7 @@ class PushResponses {
     const MeasureFunction* measure;
     double sign;
     VectorXd n, a, mu;
+    double size;        // of n before linear constraints, which may leave nothing of it
     LimitMotion limit;  // of what s is bounded by: rates and accelerations are relative to it
   };
   const System& system_;

@@ -248,4 +248,36 @@ TEST_CASE("friction along what cannot move does not slip by rounding") {
     }
 }
 
+// A bead on a wire passes the point that is nearest to D, where their distance turns and no force along it
+// moves the bead: friction takes its force times the way of that distance, there and back, and no more. To
+// what six stages leave at steps of 0.01 s.
+TEST_CASE("friction on a distance lets pass what passes the nearest point") {
+  for (int k = 0; k < 24; ++k) {
+    const double step = 0.003 + 0.0003 * k, x = 0.1 + 0.017 * k, beside = 0.5 + 0.01 * k;
+    CAPTURE(step, x, beside);
+    const Simulation run = run_scene("[structure]\nkind = 'custom'\nrods = []\n" +
+                                     node("D", x, beside, "fixed = true") +
+                                     node("B", -0.57, 0, "mass = 2\nvelocity = [1.3, 0, 0]") + R"(
+[[constraints]]
+kind = "line"
+nodes = ["B"]
+direction = [1, 0, 0]
+[[forces]]
+kind = "friction"
+name = "f"
+nodes = ["D", "B"]
+kinetic = 0.5
+[solver]
+stages = 6
+end_time = 1
+step = )" + number(step) + "\n");
+    REQUIRE(run.status == RunStatus::completed);
+    CHECK(count(run, "reversal") == 1);
+    CHECK(run.events.size() == 1);
+    const double way =
+        std::hypot(0.57 + x, beside) + std::hypot(end_positions(run)[3] - x, beside) - 2 * beside;
+    CHECK(diagnose(run).at("kinetic_energy_J").values.back() == Approx(1.69 - 0.5 * way).epsilon(1e-8));
+  }
+}
+
 }  // namespace held_friction_test
