@@ -148,9 +148,17 @@ class AtPose {
     double shortest = std::numeric_limits<double>::infinity();
     for (const Rod& rod : model.structure.rods) shortest = std::min(shortest, rod.length);
     if (mass.rows() > 0) pull = Cholesky(mass).solve(reduced).lpNorm<Eigen::Infinity>() / shortest;
+    // What sums up a controller's error moves nothing.
+    std::vector<Index> sums;
+    for (const Force& f : model.structure.forces)
+      if (f.motor.integrator >= 0) sums.push_back(3 * f.motor.integrator);
+    MatrixXd held = MatrixXd::Zero(std::ssize(sums), q.size());
+    for (Index k = 0; k < held.rows(); ++k) held(k, sums[static_cast<std::size_t>(k)]) = 1;
+    rows.conservativeResize(rows.rows() + held.rows(), Eigen::NoChange);
+    rows.bottomRows(held.rows()) = reduced_rows(system_, held);
     make_unit_rows(rows);
     for (Index row = 0; row < rows.rows(); ++row)
-      if (!(compliance[row] > 0)) rigid.push_back(row);
+      if (row >= compliance.size() || !(compliance[row] > 0)) rigid.push_back(row);
     rigid_rows = rows(rigid, Eigen::all);
     take_bending();
   }

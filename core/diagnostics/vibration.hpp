@@ -33,9 +33,10 @@ struct Vibration {
 // with C the compliances of the elastic rods' rows G_e and lambda the forces at that pose at rest under its
 // loads, accelerations included, and with the self-stress of rods that give. An elastic rod has the energy of
 // its length, 1/2 (|d| - l_0)^2 / C with tension lambda at |d| = l, while Phi = (|d|^2 - l^2) / 2 l: Hess |d|
-// = Hess Phi - g g^T / l there. Drives, latches and stops that hold are rows, and so locked. Velocities and
-// dampers are left out. Where dF/dz has a part without a potential, as that of a follower, K is not symmetric
-// and is solved for as it is: w^2 may be complex, in pairs, and the pose flutters.
+// = Hess Phi - g g^T / l there. Drives, latches and stops that hold are rows, and so locked, as are the sums
+// of controllers' errors. Velocities and dampers are left out. Where dF/dz has a part without a potential, as
+// that of a follower, K is not symmetric and is solved for as it is: w^2 may be complex, in pairs, and the
+// pose flutters.
 //
 // Rods are much stiffer than what pulls a mechanism back, and a symmetric eigenvalue solver is right to
 // round-off of the largest eigenvalue only. So the null space of all rows, N_0, is solved for by itself, with

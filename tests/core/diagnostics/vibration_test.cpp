@@ -425,4 +425,35 @@ TEST_CASE("a rod that is bent has the same frequencies, and a turn about itself"
   CHECK(bent.lowest_elastic() == Approx(straight.lowest_elastic()).epsilon(1e-2));
 }
 
+// A pendulum of 2 kg on a rod of 1 m, held by a position controller over a gear of 10: the torque by the
+// angle is that of the proportional part, whatever its integral part does with time.
+TEST_CASE("the integral of a controller is no motion of the structure") {
+  for (const double integral : {0.0, 5.0}) {
+    CAPTURE(integral);
+    const Vibration v = of_text(R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "D", position = [1, 0, 0], fixed = true},
+  {name = "P", position = [0, 0, -1], mass = 2}]
+rods = [{nodes = ["O", "P"], mass = 0}]
+[[constraints]]
+kind = "plane"
+nodes = ["P"]
+normal = [0, 1, 0]
+[[forces]]
+kind = "motor"
+nodes = ["D", "O", "P"]
+axis = [0, 1, 0]
+stall_torque = 0.1
+no_load_speed = 4000
+gear_ratio = 10
+control = "position"
+proportional = 20
+integral = )" + testing::number(integral) +
+                                "\nmotion = \"hold\"\n[gravity]\nacceleration = [0, 0, -9.81]\n");
+    CHECK(v.mechanism_motions == 1);
+    REQUIRE(v.modes.size() == 1);
+    CHECK(v.modes[0].frequency == Approx(std::sqrt(9.81 + 20.0 / 2) / (2 * pi)).epsilon(1e-9));
+  }
+}
+
 }  // namespace vibration_test
