@@ -96,8 +96,8 @@ double EnergyMeter::damping_power(const State& state, const VectorXd& accelerati
 //
 // A rate that is gone long before the step's end, with most of the power, or that has come about right behind
 // its start, is not to be had from the ends, nor one that a method lets ring about what it is: it lost what
-// the energies lost beyond the work of others, as in an impact, `lost`. Where that is less than nothing, or
-// more than the rates could lose, it is an error of the method, which the balance is to tell.
+// the energies lost beyond the work of others, as in an impact, `lost`. What that is less than nothing, or
+// more than the rates could lose, is an error of the method, which the balance is to tell.
 //
 // Where the motion between the states has the same power, `between`, that is taken: what its interpolant is
 // off where two motions are nearly one has a power of its own. All powers are those of what stiff dampers
@@ -114,9 +114,7 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
   const double at_start = damping_power(a, before_.acceleration, 0),
                at_end = damping_power(b, after_.acceleration, 0);
   const bool gone = gone_ && (at_start > most * at_end || at_end > most * at_start);
-  constexpr double by_method = 1e3;  // times rounding: what a step of a method is off all the same
-  if (gone || rings_)
-    if (lost >= -rounding_ * (gone ? by_method : 1) && lost <= h * most_power_ + rounding_) return lost;
+  if (gone || rings_) return std::clamp(lost, 0.0, h * most_power_);
   const double line = 0.5 * h * (at_start + at_end);
   double bend = h * h / 12 * (rate(a, before_.acceleration, e) - rate(b, after_.acceleration, -e));
   if (constexpr double too_large = 1e5; h * fastest > too_large) {
@@ -166,7 +164,7 @@ struct Rates {
   // tells. A rate that falls as exp(-c t / m) has less than a sixth of the step for it.
   bool gone() const { return 9 * off > std::max({at_a, at_b, mean}); }
   // They change their sign from state to state.
-  bool ring() const { return 9 * mean < std::min(at_a, at_b); }
+  bool ring() const { return 2 * mean < std::min(at_a, at_b); }
 };
 // Of a part: its rates. Of what dampers join besides: those that they tell from what it does as a whole, by
 // the powers that they would take of them.
@@ -201,7 +199,7 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   const VectorXd of_a = power(a.w), of_b = power(b.w), of_mean = power(mean),
                  of_off = power(mean - 0.5 * (a.w + b.w));
   constexpr double of_energy = 1e-9;
-  rounding_ = of_energy * std::max(system_.kinetic_energy(a.w), system_.kinetic_energy(b.w));
+  const double rounding = of_energy * std::max(system_.kinetic_energy(a.w), system_.kinetic_energy(b.w));
   for (Index i = 0; i < mean.size(); ++i) {
     PartRates& part = of(parts_, i);
     Rates& damped = of(damped_, i).damped;
@@ -215,8 +213,8 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
     const PartRates& part = of(parts_, i);
     if (!part.stiff) continue;
     const Rates& damped = of(damped_, i).damped;
-    gone_ = gone_ || part.all.gone() || (damped.gone() && h * damped.off > rounding_);
-    rings_ = rings_ || (damped.ring() && h * std::min(damped.at_a, damped.at_b) > rounding_);
+    gone_ = gone_ || part.all.gone() || (damped.gone() && h * damped.off > rounding);
+    rings_ = rings_ || (damped.ring() && h * std::min(damped.at_a, damped.at_b) > rounding);
     if (part.all.gone()) ends.a.w[i] = ends.b.w[i] = mean[i];
     const double at_a = ends.a.w[i], at_b = ends.b.w[i];
     ends.by_a[i] = (6 * mean[i] - 4 * at_a - 2 * at_b) / h;

@@ -60,8 +60,8 @@ class EnergyMeter {
     VectorXd by_a = {}, by_b = {};
   };
   Ends trusted_ends(const State& a, const State& b);
-  bool gone_ = false, rings_ = false;     // in the last step of these, the rates of something
-  double most_power_ = 0, rounding_ = 0;  // of dampers there [W]; of energies [J]
+  bool gone_ = false, rings_ = false;  // in the last step of these, the rates of something
+  double most_power_ = 0;              // of dampers there [W]
   double taken_by_stiff(const State& a, const State& b, double fastest, double between, double lost);
 
   System system_;  // follows the states

@@ -240,7 +240,8 @@ class Change {
     bool still_there = true;  // and nothing that held has broken, which moves something
     for (Index r = 0; r < count(); ++r) {
       if (!movable(r))
-        rounds_[r] = std::max(rounds_[r], immovable_rounding * by_themselves.of_coordinates[r]);
+        rounds_[r] = std::max(rounds_[r], immovable_rounding * by_themselves.of_coordinates[r] +
+                                              sum_rounding * by_themselves.uncancelled[r]);
       still_there = still_there && std::abs(b_[r]) <= rounds_[r] && !(crossed(r) && sides_.active(side(r)));
     }
     if (still_there) b_.setZero();

@@ -20,17 +20,25 @@ PushResponses::PushResponses(const System& system, const State& state)
 
 void PushResponses::add(const MeasureFunction& s, double sign, double near, const LimitMotion& limit) {
   const auto& stencil = s.stencil();
-  VectorXd gradient(static_cast<Index>(stencil.size())), node_force = VectorXd::Zero(q_.size());
+  VectorXd gradient(static_cast<Index>(stencil.size())), node_force = VectorXd::Zero(q_.size()),
+                                                         of_nodes = node_force;
   s.value_and_gradient(q_.data(), gradient.data(), near);
   for (std::size_t k = 0; k < stencil.size(); ++k)
     node_force[stencil[k]] += sign * gradient[static_cast<Index>(k)];
+  // A coordinate's share of a gradient is rounded as its node's whole one.
+  for (const int k : stencil) {
+    const Index x = k - k % 3;
+    of_nodes.segment(x, 3).setConstant(node_force.segment(x, 3).lpNorm<Eigen::Infinity>());
+  }
   const Index n = system_.solved_coordinates();
+  VectorXd sizes(n);
+  system_.reduce_sizes(of_nodes, sizes);
   Row row{.measure = &s,
           .sign = sign,
           .n = VectorXd(n),
           .a = VectorXd(n),
           .mu = VectorXd(system_.constraints()),
-          .size = node_force.size() > 0 ? node_force.lpNorm<Eigen::Infinity>() : 0.0,
+          .size = n > 0 ? sizes.maxCoeff() : 0.0,
           .limit = limit};
   system_.reduce_force(node_force, row.n);
   saddle_.solve(row.n, VectorXd::Zero(row.mu.size()), row.a, row.mu);
@@ -50,8 +58,10 @@ MatrixXd PushResponses::matrix() const {
 bool PushResponses::movable(Index i) const {
   const Row& row = rows_[static_cast<std::size_t>(i)];
   if (row.n.size() == 0) return false;
-  const double most = std::max(row.size, row.n.lpNorm<Eigen::Infinity>());
-  return row.n.dot(row.a) > 1e-12 * most * most / system_.mass().diagonal().maxCoeff();
+  constexpr double of_rounding = 1e-9;  // of a gradient: what linear constraints leave of it
+  const double most = row.n.lpNorm<Eigen::Infinity>();
+  return most > of_rounding * row.size &&
+         row.n.dot(row.a) > 1e-12 * most * most / system_.mass().diagonal().maxCoeff();
 }
 
 VectorXd PushResponses::rates(const VectorXd& w) const {
@@ -118,12 +128,15 @@ PushResponses::Accelerations PushResponses::accelerations(const Structure& struc
   const VectorXd sizes = force_sizes(system_, structure, state, lambda);
   const double largest = lambda.size() > 0 ? lambda.lpNorm<Eigen::Infinity>() : 0.0;
   const double fastest = acceleration.size() > 0 ? acceleration.lpNorm<Eigen::Infinity>() : 0.0;
-  Accelerations out{VectorXd(size()), VectorXd(size()), VectorXd(size()), largest};
+  const double freely =
+      sizes.size() > 0 ? sizes.cwiseQuotient(VectorXd(system_.mass().diagonal())).maxCoeff() : 0.0;
+  Accelerations out{VectorXd(size()), VectorXd(size()), VectorXd(size()), VectorXd(size()), largest};
   for (Index i = 0; i < size(); ++i) {
     const Row& row = rows_[static_cast<std::size_t>(i)];
     const double curvature = row.measure->curvature_along(q_.data(), v.data());
     out.value[i] = row.n.dot(acceleration) + row.sign * (curvature - row.limit.acceleration);
     out.of_coordinates[i] = row.n.lpNorm<1>() * fastest;
+    out.uncancelled[i] = row.n.lpNorm<1>() * freely;
     out.terms[i] = row.a.cwiseAbs().dot(sizes) + row.n.cwiseAbs().dot(acceleration.cwiseAbs()) +
                    std::abs(curvature) + std::abs(row.limit.acceleration);
   }

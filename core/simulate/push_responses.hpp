@@ -39,9 +39,10 @@ class PushResponses {
   // of several the least; `unexplained`: the share of dw that none do, in the mass metric.
   VectorXd impulses_of(const VectorXd& dw, VectorXd& lambda, double& unexplained) const;
   // sign_i s_i'' of a state at that pose, by the system's own forces; empty where they have no solution. With
-  // the size of what each is the sum of, and what it is where all coordinates are accelerated as the fastest.
+  // the size of what each is the sum of, and what it is where all coordinates are accelerated as the fastest,
+  // or as any would be by what acts on it alone.
   struct Accelerations {
-    VectorXd value, terms, of_coordinates;
+    VectorXd value, terms, of_coordinates, uncancelled;
     double largest_multiplier = 0.0;  // of what holds there [N]
   };
   Accelerations accelerations(const Structure& structure, const State& state) const;

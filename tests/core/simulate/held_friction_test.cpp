@@ -248,6 +248,50 @@ TEST_CASE("friction along what cannot move does not slip by rounding") {
     }
 }
 
+// At rest nothing is accelerated but by rounding, of what the rods bear.
+TEST_CASE("friction along what cannot move does not slip by rounding at rest") {
+  for (const double along : {0.2, 0.5123, 0.6822, 1.0})
+    for (const double load : {-19.3389, 3.0}) {
+      CAPTURE(along, load);
+      const std::string scene =
+          "[structure]\nkind = 'custom'\n" + node("P0", 0, 0, "fixed = true") +
+          node("D", 1.2, 0, "fixed = true") + node("P1", along, -0.5, "mass = 1") + rod("P0", "P1", 0.7) +
+          rod("D", "P1", 0.5) + "[[loads]]\nnodes = ['P1']\nforce = [" + number(load) +
+          ", 0, 0]\n[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nend_time = 0.1\n";
+      const Diagnostics without = diagnose(run_scene(scene)),
+                        with = diagnose(run_scene(
+                            scene, {"forces[0]={kind='friction',nodes=['P1'],direction=[1,0,0],kinetic=5}"}));
+      CHECK((with.axial_force - without.axial_force).cwiseAbs().maxCoeff() <=
+            1e-9 * without.axial_force.cwiseAbs().maxCoeff());
+    }
+}
+
+// B is led by A, a millionth and less of its way: what holds B holds A, with a million times its force.
+TEST_CASE("what rubs at the end of a long lever holds the other end") {
+  for (const double lever : {1e-3, 1e-6, 1e-7}) {
+    CAPTURE(lever);
+    const std::string scene = "[structure]\nkind = 'custom'\nrods = []\n" + node("A", 0, 0, "mass = 1") +
+                              node("B", 0, 1, "mass = 1") +
+                              "[[constraints]]\nkind = 'line'\nnodes = ['A', 'B']\ndirection = [1, 0, 0]\n"
+                              "[[constraints]]\nkind = 'relation'\nnodes = ['A', 'B']\ncoefficients = [" +
+                              number(lever) + ", 0, 0, -1, 0, 0]\n";
+    const Simulation rests = run_scene(
+        scene, {"forces[0]={kind='friction',nodes=['B'],direction=[1,0,0],kinetic=" + number(2 / lever) + "}",
+                "loads=[{nodes=['A'],force=[1,0,0]}]", "solver.end_time=1"});
+    CHECK(std::abs(end_positions(rests)[0]) <= 1e-12);
+    // Thrown back at half of its speed after half a second.
+    const Simulation thrown = run_scene(
+        scene, {"constraints[2]={kind='coordinate_stop',nodes=['B'],direction=[1,0,0],restitution=0.5,"
+                "rest_speed=1e-12,max=" +
+                    number(0.5 * lever) + "}",
+                "structure.nodes.A.velocity=[1,0,0]",
+                "structure.nodes.B.velocity=[" + number(lever) + ",0,0]", "solver.end_time=1"});
+    REQUIRE(thrown.status == RunStatus::completed);
+    CHECK(end_positions(thrown)[0] ==
+          Approx(0.25).epsilon(2e-5));  // of what counts as touching, by the lever
+  }
+}
+
 // A bead on a wire passes the point that is nearest to D, where their distance turns and no force along it
 // moves the bead: friction takes its force times the way of that distance, there and back, and no more. To
 // what six stages leave at steps of 0.01 s.
