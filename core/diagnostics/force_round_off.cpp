@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/structure/node_positions.hpp"
+
 namespace unfurl {
 
 double force_round_off(const Simulation& run) {

@@ -263,7 +263,7 @@ free_length = 1
 // Two masses of 1 kg, 1 m/s apart, of which a damper between them takes 1/4 J: by a method whose rates ring,
 // too, and not by one that explodes there, whose error is none of the damper's.
 TEST_CASE("a stiff damper takes what is there, and gives nothing where a method explodes") {
-  const auto apart = [](const char* method, double damping) {
+  const auto apart = [](const char* method, double by) {
     return testing::run_scene(R"([structure]
 kind = "custom"
 rods = []
@@ -277,22 +277,22 @@ direction = [1, 0, 0]
 kind = "spring"
 nodes = ["U", "V"]
 stiffness = 0
-damping = )" + testing::number(damping) +
+damping = )" + testing::number(by) +
                               "\n[solver]\nmodel = 'full'\nstep = 0.01\nend_time = 0.1\nmethod = '" + method +
                               "'\n");
   };
-  for (const double damping : {200.0, 300.0, 1000.0})
+  for (const double by : {200.0, 300.0, 1000.0})
     for (const char* method : {"rk4", "rk4_projected", "rk4_baumgarte"}) {
-      CAPTURE(method, damping);
-      const Simulation run = apart(method, damping);
+      CAPTURE(method, by);
+      const Simulation run = apart(method, by);
       const Diagnostics d = diagnose(run);
       const double kinetic = last(d, "kinetic_energy_J");
       CHECK(kinetic > 1);
       CHECK(testing::largest(d, "energy_balance_J") > 0.5 * kinetic);
     }
-  for (const double damping : {500.0, 1e4, 1e6}) {
-    CAPTURE(damping);
-    const Diagnostics d = diagnose(apart("generalized_alpha", damping));
+  for (const double by : {500.0, 1e4, 1e6}) {
+    CAPTURE(by);
+    const Diagnostics d = diagnose(apart("generalized_alpha", by));
     CHECK(testing::largest(d, "energy_balance_J") < 0.01);
   }
 }
