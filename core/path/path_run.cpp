@@ -331,8 +331,7 @@ class PathRun {
     const double lost = 0.5 * motion_.v() * motion_.v();
     const bool from_start = run_.trajectory.size() == 1 && motion_.v() == 0;
     const std::vector<std::size_t> laws = stand_still();
-    const ScalarLaw::Value pull = law_->at(motion_.s(), 0.0, motion_.t());
-    if (slope * pull.Q > std::abs(slope) * (rounded_sum * pull.scale + pull.noise)) {
+    if (pull_off(slope, motion_.t(), rounded_sum) > 0) {
       add_event(impact(sides_.stops()[i]), lost);
       append(state_at(motion_.t(), motion_.s(), 0));
       if (!laws.empty()) change_model(sides_.model(*base_), true);
@@ -349,6 +348,12 @@ class PathRun {
     add_events(laws);
   }
 
+  // What pulls it off a stop whose gap has this slope, less a share of what that is the sum of.
+  double pull_off(double slope, double t, double share) const {
+    const ScalarLaw::Value pull = law_->at(motion_.s(), 0.0, t);
+    return slope * pull.Q - std::abs(slope) * share * pull.scale;
+  }
+
   // Which cables are stretched and pull may jump with the rates: those that did.
   std::vector<std::size_t> stand_still() {
     const System& system = model().system;
@@ -360,15 +365,12 @@ class PathRun {
     return laws;
   }
 
-  // Held by a stop, until what pushes against it pulls; by friction, until that gives way; or locked, until
-  // the end.
+  // Held by a stop until that would have to pull, by friction until that gives way, or locked until the end.
   void rest() {
     double until = grid_.end();
     const double now = motion_.t();
     if ((held_ || stuck_) && law_->timed()) {
-      const auto pull = [&](double t) {
-        return stuck_ ? excess(t) : held_slope_ * law_->at(motion_.s(), 0.0, t).Q;
-      };
+      const auto pull = [&](double t) { return stuck_ ? excess(t) : pull_off(held_slope_, t, 1e-14); };
       until = first_time_above(pull, now, until, std::min(options_.step, (until - now) / 8), edges_);
     }
     append_grid(until < grid_.end() ? before(until) : until);

@@ -26,7 +26,7 @@ struct ModeChange {
   struct Impact {
     std::size_t stop;
     double energy_lost;  // [J]
-    bool held = false;   // it was before, at another rate of its limit
+    bool held = false;   // it was before the rates jumped
   };
   State state = {};  // after the impulses
   std::vector<Impact> impacts = {};

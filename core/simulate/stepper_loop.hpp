@@ -375,8 +375,7 @@ class Stepper::Loop {
 
   void record(const ModeChange& change) {
     for (const auto& [stop, energy_lost, held] : change.impacts) {
-      // A taut cable whose reel takes up speed: a drive's work.
-      if (held && sides_.active(stop) && sides_.stops()[stop].reeled) continue;
+      if (held && sides_.active(stop)) continue;  // what held takes up speed: a drive's work
       Event event = sides_.events(stop, change.state.t).front();
       if (!sides_.active(stop)) event.name = "stop " + event.element;
       event.kind = "contact";

@@ -261,4 +261,43 @@ stages = 4
   CHECK(last(diagnose(run), "impact_loss_J") == Approx(lost).epsilon(1e-9));
 }
 
+// 2 kg rest on a floor and are drawn along (2, 0, -1) from 0.1 s on, at once: m v^2 / 2 of 5/4 m/s more,
+// which the drive gives, and no impact of the floor.
+TEST_CASE("a drive that begins with a jump is no impact of the stop that holds already") {
+  const Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+rods = []
+nodes = [{name = "B", position = [0, 0, 0], mass = 2}]
+[[constraints]]
+kind = "plane"
+nodes = ["B"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "coordinate_stop"
+name = "floor"
+nodes = ["B"]
+direction = [0, 0, 1]
+min = 0
+[[constraints]]
+kind = "coordinate"
+name = "draw"
+nodes = ["B"]
+direction = [1, 0, -0.5]
+motion = "rate"
+rate = 1
+start = 0.1
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+step = 0.01
+end_time = 0.3
+)");
+  REQUIRE(run.status == RunStatus::completed);
+  for (const Event& event : run.events) CHECK(event.energy_lost == Approx(0).margin(1e-12));
+  const Diagnostics d = diagnose(run);
+  CHECK(last(d, "impact_loss_J") == Approx(0).margin(1e-12));
+  CHECK(last(d, "drive_work_J") == Approx(last(d, "kinetic_energy_J")).epsilon(1e-9));
+}
+
 }  // namespace driven_impact_test

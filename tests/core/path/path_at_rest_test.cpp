@@ -107,6 +107,33 @@ TEST_CASE("what an impact stops, and nothing pulls away, rests on the stop") {
   }
 }
 
+// A pendulum comes down on a stop at its lowest point, whatever the direction of gravity; a load pulls it off
+// from 0.8 s on. Rounding does not, at 0.5 s.
+TEST_CASE("what rests where nothing pulls is left when something does") {
+  for (int k = 0; k < 24; ++k) {
+    const double a = 0.26 * k, x = -std::cos(a), z = -std::sin(a);
+    CAPTURE(a);
+    const auto vector = [](double p, double q) { return "[" + number(p) + ", 0, " + number(q) + "]"; };
+    const Simulation run = run_on_path(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = [0, 0, 0], fixed = true}, {name = "
+        "'E', "
+        "position = " +
+        vector(x, z) + ", fixed = true}, {name = 'P', position = " + vector(z, -x) +
+        ", mass = 1}]\nrods = [{nodes = ['O', 'P'], mass = 0}]\n[[constraints]]\nkind = 'plane'\nnodes = "
+        "['P']\n"
+        "normal = [0, 1, 0]\n[[constraints]]\nkind = 'angle_stop'\nname = 's'\nnodes = ['E', 'O', 'P']\n"
+        "axis = [0, 1, 0]\nmin = 0\nmax = 200\nrestitution = 0\n[[forces]]\nkind = 'load_over_time'\nnodes = "
+        "['P']\n"
+        "force = " +
+        vector(z, -x) + "\ntimes = [0.8, 0.9]\nvalues = [0, 1]\n[gravity]\nacceleration = " +
+        vector(9.81 * x, 9.81 * z) + "\n[solver]\nend_time = 1\n");
+    REQUIRE(run.events.size() == 2);
+    CHECK(run.events[0].name == "rests on stop s");
+    CHECK(run.events[1].name == "leaves stop s");
+    CHECK(run.events[1].t == Approx(0.8).margin(1e-6));
+  }
+}
+
 TEST_CASE("a structure on which nothing acts is no failure on the path") {
   const std::vector<std::string> no_stop{"constraints[2].enabled=false", "solver.end_time=0.5"};
   const auto with = [&](std::vector<std::string> more) {
