@@ -97,7 +97,7 @@ double EnergyMeter::damping_power(const State& state, const VectorXd& accelerati
 // A rate that is gone long before the step's end, with most of the power, or that has come about right behind
 // its start, is not to be had from the ends, nor one that a method lets ring about what it is: it lost what
 // the energies lost beyond the work of others, as in an impact, `lost`. What that is less than nothing, or
-// more than the rates could lose, is an error of the method, which the balance is to tell.
+// more than these powers could take, is an error of the method, which the balance is to tell.
 //
 // Where the motion between the states has the same power, `between`, that is taken: what its interpolant is
 // off where two motions are nearly one has a power of its own. All powers are those of what stiff dampers
@@ -114,7 +114,10 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
   const double at_start = damping_power(a, before_.acceleration, 0),
                at_end = damping_power(b, after_.acceleration, 0);
   const bool gone = gone_ && (at_start > most * at_end || at_end > most * at_start);
-  if (gone || rings_) return std::clamp(lost, 0.0, h * most_power_);
+  if (gone || rings_) {
+    const double most_lost = std::max({h * most_power_, h * at_start, h * at_end, between, 0.0});
+    return std::clamp(lost, 0.0, most_lost);
+  }
   const double line = 0.5 * h * (at_start + at_end);
   double bend = h * h / 12 * (rate(a, before_.acceleration, e) - rate(b, after_.acceleration, -e));
   if (constexpr double too_large = 1e5; h * fastest > too_large) {
