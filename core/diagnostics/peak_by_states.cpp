@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "core/diagnostics/state_forces.hpp"
+#include "core/math/lagrange.hpp"
 #include "core/simulate/trajectory.hpp"
 
 namespace unfurl {
@@ -14,18 +15,15 @@ namespace {
 
 constexpr std::size_t each_side = 3, all_points = 2 * each_side;
 
-// Lagrange's polynomial through points.
+// The polynomial through points.
 struct Points {
   std::array<double, all_points> t, x;
 
   double through(std::size_t begin, std::size_t end, double at) const {
+    const auto time = [&](std::size_t k) { return t[begin + k]; };
     double sum = 0;
-    for (std::size_t a = begin; a < end; ++a) {
-      double term = x[a];
-      for (std::size_t b = begin; b < end; ++b)
-        if (b != a) term *= (at - t[b]) / (t[a] - t[b]);
-      sum += term;
-    }
+    for (std::size_t k = 0; k < end - begin; ++k)
+      sum += lagrange_weight(k, end - begin, at, time) * x[begin + k];
     return sum;
   }
   double operator()(double at) const { return through(0, all_points, at); }

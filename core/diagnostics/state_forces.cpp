@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
+
+#include "core/math/lagrange.hpp"
 
 namespace unfurl {
 namespace {
@@ -16,15 +19,6 @@ constexpr double weak = 3, rough = 1e-6, rough_at_end = 1e-4;
 constexpr double negligible = 1e-8, harmless = 1e-6;
 
 const SolvedPoint nothing_known{};
-
-// The weight of point a in the polynomial through all of them, at t.
-template <class TimeOf>
-double weight(std::size_t a, std::size_t points, double t, const TimeOf& time) {
-  double out = 1;
-  for (std::size_t b = 0; b < points; ++b)
-    if (b != a) out *= (t - time(b)) / (time(a) - time(b));
-  return out;
-}
 
 }  // namespace
 
@@ -108,7 +102,7 @@ bool StateForces::smooth(std::size_t i) {
   VectorXd off = lambda;
   const auto time = [&](std::size_t k) { return trajectory_.time(states[k]); };
   for (std::size_t k = 0; k < states.size(); ++k)
-    off -= weight(k, states.size(), trajectory_.time(i), time) * at(states[k]).lambda;
+    off -= lagrange_weight(k, states.size(), trajectory_.time(i), time) * at(states[k]).lambda;
   return off.lpNorm<Eigen::Infinity>() <= (inside ? rough : rough_at_end) * lambda.lpNorm<Eigen::Infinity>();
 }
 
@@ -177,7 +171,8 @@ void StateForces::interpolate(std::size_t i, Close& here) {
   const auto time = [&](std::size_t k) { return near[k].t; };
   const auto through = [&](std::size_t points, VectorXd SolvedPoint::*what) {
     VectorXd out = VectorXd::Zero((here.point.*what).size());
-    for (std::size_t k = 0; k < points; ++k) out += weight(k, points, t, time) * (near[k].point.*what);
+    for (std::size_t k = 0; k < points; ++k)
+      out += lagrange_weight(k, points, t, time) * (near[k].point.*what);
     return out;
   };
   const auto odd = [&](std::size_t k) {

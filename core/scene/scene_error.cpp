@@ -8,10 +8,11 @@ namespace unfurl {
 std::string problem_text(const SceneProblem& problem) {
   const SourceLocation& where = problem.where;
   std::string text = where.file;
+  const bool option = text == override_source || text == varied_source;
   if (where.line > 0)
     text.append(":").append(std::to_string(where.line)).append(":").append(std::to_string(where.column));
   if (!problem.key.empty())
-    text.append(text.empty() ? "" : text == override_source ? " " : ": ").append(problem.key);
+    text.append(text.empty() ? "" : option ? " " : ": ").append(problem.key);
   return text.append(text.empty() ? "" : ": ").append(problem.message);
 }
 

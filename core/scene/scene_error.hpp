@@ -10,9 +10,10 @@
 namespace unfurl {
 
 inline constexpr const char* override_source = "--set";  // where overrides are said to come from
+inline constexpr const char* varied_source = "--vary";   // and those of a sweep's axes
 
 struct SourceLocation {
-  std::string file;          // as the user named it, or override_source
+  std::string file;          // as the user named it, override_source or varied_source
   int line = 0, column = 0;  // from 1; 0: unknown
 
   bool operator==(const SourceLocation&) const = default;
@@ -25,7 +26,7 @@ struct SceneProblem {
   std::string message;
 };
 
-// "FILE:LINE:COLUMN: KEY: message" or, for an override, "--set KEY: message".
+// "FILE:LINE:COLUMN: KEY: message" or, for an override, "--set KEY: message", "--vary KEY: message".
 std::string problem_text(const SceneProblem& problem);
 
 // All mistakes found in one reading. what() joins them, one line each.

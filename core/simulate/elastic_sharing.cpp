@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/elastic_sharing.hpp"
 
+#include <cstddef>
 #include <limits>
+
+#include "core/math/lagrange.hpp"
 
 namespace unfurl {
 
@@ -71,15 +74,12 @@ void ElasticSharing::share(double t, const VectorXd& q, bool limit, VectorXd& la
   if (last_.size() > most_before) last_.pop_front();
 }
 
-// Lagrange's polynomial in time through the last changes.
+// The polynomial in time through the last changes.
 VectorXd ElasticSharing::at_limit(double t) const {
   VectorXd sum = VectorXd::Zero(last_.back().lambda.size());
-  for (const Change& at : last_) {
-    double weight = 1;
-    for (const Change& other : last_)
-      if (&other != &at) weight *= (t - other.t) / (at.t - other.t);
-    sum += weight * at.lambda;
-  }
+  const auto time = [&](std::size_t k) { return last_[k].t; };
+  for (std::size_t k = 0; k < last_.size(); ++k)
+    sum += lagrange_weight(k, last_.size(), t, time) * last_[k].lambda;
   return sum;
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/integrators/index1.hpp"
 #include "core/math/determined_rows.hpp"
+#include "core/math/lagrange.hpp"
 #include "core/math/saddle_solver.hpp"
 #include "core/simulate/elastic_sharing.hpp"
 
@@ -155,14 +156,10 @@ class StretchedRun {
 
   // The polynomial through the states, at that of state i.
   VectorXd through(const std::vector<std::size_t>& states, std::size_t i) const {
-    const double t = trajectory_.time(i);
+    const auto time = [&](std::size_t k) { return trajectory_.time(states[k]); };
     VectorXd out = VectorXd::Zero(u_[i].size());
-    for (const std::size_t a : states) {
-      double weight = 1;
-      for (const std::size_t b : states)
-        if (b != a) weight *= (t - trajectory_.time(b)) / (trajectory_.time(a) - trajectory_.time(b));
-      out += weight * u_[a];
-    }
+    for (std::size_t k = 0; k < states.size(); ++k)
+      out += lagrange_weight(k, states.size(), trajectory_.time(i), time) * u_[states[k]];
     return out;
   }
 

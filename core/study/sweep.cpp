@@ -61,7 +61,7 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const P
       row.push_back(exact_number(run.status == RunStatus::failed ? nan : measure.value(run, diagnostics)));
   } catch (const SceneError& error) {
     row.emplace_back("invalid");
-    said.why = problem_text(error.problems().front());
+    said.why = problem_text(plan.of_axes(error).problems().front());
   } catch (const PathRefused& error) {  // solver.model = "path": one point without an answer
     row.emplace_back("failed");
     said.why = error.what();

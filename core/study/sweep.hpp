@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/diagnostics/measures.hpp"
+#include "core/scene/scene_error.hpp"
 #include "core/study/journal.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/scene_variation.hpp"
@@ -49,6 +50,8 @@ struct SweepPlan {
   bool is_finished(const std::vector<std::string>& row) const;
   // Is a row one of the whole grid's?
   std::function<bool(const std::vector<std::string>&)> asked() const;
+  // What the scene says of a point's values, as said of the axes.
+  SceneError of_axes(const SceneError& error) const;
 };
 
 // Throws StudyError (no axis, no measure, a key twice, too many points), SceneError where a value

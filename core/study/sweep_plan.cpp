@@ -3,14 +3,15 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <iomanip>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "core/study/sweep.hpp"
 #include "core/text/nearest_name.hpp"
@@ -209,6 +210,15 @@ std::function<bool(const std::vector<std::string>&)> SweepPlan::asked() const {
   };
 }
 
+SceneError SweepPlan::of_axes(const SceneError& error) const {
+  auto problems = error.problems();
+  for (SceneProblem& problem : problems)
+    if (problem.where.file == override_source &&
+        std::ranges::any_of(axes, [&](const SweepAxis& axis) { return axis.key.starts_with(problem.key); }))
+      problem.where.file = varied_source;
+  return SceneError(std::move(problems));
+}
+
 bool SweepPlan::is_finished(const std::vector<std::string>& row) const {
   const std::string& outcome = row[axes.size()];
   if (outcome == "failed" || outcome == "invalid") return true;
@@ -237,14 +247,14 @@ std::string unit_of_axis(const SweepPlan& plan, const SweepAxis& axis,
                          const std::map<std::string, std::string>& known) {
   constexpr std::size_t most = 24;  // of a long list those that lie alike far apart
   const std::size_t count = std::min(axis.values.size(), most);
-  std::exception_ptr first;
+  std::optional<SceneError> first;
   for (std::size_t i = 0; i < count; ++i) try {
       const std::size_t at = count > 1 ? i * (axis.values.size() - 1) / (count - 1) : 0;
       return unit_of(axis.key, plan.source.read({axis.key + "=" + axis.values[at]}).units, known);
-    } catch (const SceneError&) {
-      if (!first) first = std::current_exception();
+    } catch (const SceneError& error) {
+      if (!first) first = plan.of_axes(error);
     }
-  std::rethrow_exception(first);
+  throw *first;
 }
 
 // "structure.angle (1000000) x structure.length (300)".

@@ -48,4 +48,20 @@ end_time = 0.01
       " --json --set structure.nodes.B.fixed=true --set solver.model=auto tells why\n"));
 }
 
+TEST_CASE("what is wrong with an axis is said of --vary") {
+  const ScratchDirectory dir;
+  const auto sweep = [&](const std::string& axis) {
+    return run_program({"sweep", "pendulum", "--set", "solver.end_time=0.01", "--vary", axis, "--measure",
+                        "end_time", "-o", dir / "out"});
+  };
+  const ProgramResult key = sweep("structure.lenth=1,2");
+  CHECK(key.code == 3);
+  CHECK(key.err.find("--vary structure.lenth: unknown key; did you mean 'length'?") != std::string::npos);
+  const ProgramResult value = sweep("solver.step=0,0.01");
+  INFO(value.err);
+  CHECK(value.code == 0);
+  CHECK(value.err.find("invalid: solver.step=0: --vary solver.step: must be > 0 s; got 0") !=
+        std::string::npos);
+}
+
 }  // namespace unanswered_sweep_test

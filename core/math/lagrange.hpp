@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Polynomials through a few points. For points that are used again and again, core/math/barycentric.hpp.
+#pragma once
+
+#include <cstddef>
+
+namespace unfurl {
+
+// The weight of point a in the polynomial through `points` of them, at t; time(b) is where point b lies.
+template <class TimeOf>
+double lagrange_weight(std::size_t a, std::size_t points, double t, const TimeOf& time) {
+  double out = 1;
+  for (std::size_t b = 0; b < points; ++b)
+    if (b != a) out *= (t - time(b)) / (time(a) - time(b));
+  return out;
+}
+
+}  // namespace unfurl
