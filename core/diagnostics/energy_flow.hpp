@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/diagnostics/drives.hpp"
@@ -42,7 +43,13 @@ class EnergyMeter {
   bool idle() const { return !loads_ && !dampers_ && !drives_; }
   // The step from a to b, which follows on the last one; `at_b` where that is known of b already.
   void add(const State& a, const State& b, SolvedPoint at_b = {});
-  void jump() { fresh_ = false; }                        // velocities have changed within no time
+  // Velocities have changed within no time, or another meter goes on: what was booked ahead of what rings is
+  // let go [J].
+  double jump() {
+    fresh_ = false;
+    dissipated -= booked_;
+    return std::exchange(booked_, 0.0);
+  }
   double load_work = 0, dissipated = 0, drive_work = 0;  // so far [J]
   // Told every point of the quadrature: its weight [s], the time, node coordinates, velocities, multipliers.
   std::function<void(double, double, const VectorXd&, const VectorXd&, const VectorXd&)> at_point = {};
@@ -61,7 +68,12 @@ class EnergyMeter {
   };
   Ends trusted_ends(const State& a, const State& b);
   bool gone_ = false, rings_ = false;  // in the last step of these, the rates of something
-  double most_power_ = 0;              // of dampers there [W]
+  double most_power_ = 0;              // of dampers there, but of those whose rates ring [W]
+  struct Ringing {                     // at its ends: power [W], energy [J]
+    double power_a = 0, power_b = 0, at_a = 0, at_b = 0;
+  };
+  Ringing ringing_;
+  double booked_ = 0;  // as taken, of what rings in the last state [J]
   double taken_by_stiff(const State& a, const State& b, double fastest, double between, double lost);
 
   System system_;  // follows the states

@@ -143,9 +143,9 @@ bool Dvm::is_stiff() {
   return forces_are_stiff();
 }
 
-double Dvm::longest_step(const State& state, double h) {
+double Dvm::longest_step(const State& state, double h, double whole) {
   if (settling_.over() || system_.constant_forces()) return h;
-  return settling_.longest_step(h, c_.s, !eq_.at_ends, [&] {
+  return settling_.longest_step(h, whole, c_.s, !eq_.at_ends, [&] {
     eq_.start(state.t, state.z, state.w, h);
     return eq_.h_rate();
   });

@@ -69,7 +69,7 @@ class Dvm final : public Integrator {
     return report;
   }
 
-  double longest_step(const State& state, double h) override;
+  double longest_step(const State& state, double h, double whole) override;
   bool inside(const State& start, double h, double share, VectorXd& z, VectorXd& w) const override;
 
   void restart() override {

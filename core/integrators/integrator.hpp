@@ -20,8 +20,9 @@ class Integrator {
   // Forget what was learnt from earlier steps (predictors): the next state does not follow the last one.
   virtual void restart() = 0;
   // The longest step, up to h, with which to go on from a state: what follows on restart() may have to be
-  // resolved although nothing of it is left after a step. Asked once before a step.
-  virtual double longest_step(const State& /*state*/, double h) { return h; }
+  // resolved although nothing of it is left after a step. h may be what is left of a `whole` one. Asked once
+  // before a step.
+  virtual double longest_step(const State& /*state*/, double h, double /*whole*/) { return h; }
   // Coordinates and rates at this share of the last step, if that was one of size h from `start`, on its own
   // polynomial. False where the method has none that tells more than the cubic of the step's ends.
   virtual bool inside(const State& /*start*/, double /*h*/, double /*share*/, VectorXd& /*z*/,

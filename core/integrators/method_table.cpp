@@ -62,9 +62,9 @@ class Following final : public Integrator {
     if (report.ok()) system_.count_on(state);
     return report;
   }
-  double longest_step(const State& state, double h) override {
+  double longest_step(const State& state, double h, double whole) override {
     system_.follow(state);
-    return plain_->longest_step(state, h);
+    return plain_->longest_step(state, h, whole);
   }
   bool inside(const State& start, double h, double share, VectorXd& z, VectorXd& w) const override {
     return plain_->inside(start, h, share, z, w);

@@ -16,6 +16,10 @@ bool drives_something(const Constraint& constraint) {
   return constraint.kind == "measure" && constraint.target.moves();
 }
 
+bool warms(const Rod& rod) {
+  return !rod.gives && rod.expansion != 0;
+}
+
 }  // namespace
 
 const Constraint* driven_row(const Structure& structure) {
@@ -48,7 +52,7 @@ std::shared_ptr<const System> path_system(const std::shared_ptr<const Model>& mo
     freed.constraints.erase(freed.constraints.begin() + (drive - structure.constraints.data()));
     system = std::make_shared<const System>(freed, true);
   }
-  if (system->rheonomic()) throw PathRefused("constraints change with time");
+  if (std::ranges::any_of(structure.rods, warms)) throw PathRefused("rods change their length with time");
   const Mobility mobility = analyse_mobility(*system, node_positions(structure));
   if (mobility.degrees_of_freedom != 1)
     throw PathRefused("the structure has " + std::to_string(mobility.degrees_of_freedom) +

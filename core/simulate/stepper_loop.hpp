@@ -142,7 +142,7 @@ class Stepper::Loop {
     double h = target.h;
     in_step_ = 0;
     while (now().t < target_) {
-      const double short_of = integrator_->longest_step(now(), h);
+      const double short_of = integrator_->longest_step(now(), h, std::max(h, run_.options.step));
       part_end_ = short_of < h ? now().t + short_of : target_;
       if (!part(short_of)) return ended_ = true, false;
       h = target_ - now().t;

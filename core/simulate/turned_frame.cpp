@@ -53,7 +53,9 @@ bool can_turn(const Structure& structure, const MatrixXd& about) {
 TurnedFrame::TurnedFrame(const Structure& structure) {
   if (!structure.deployment.folds() || structure.sectors != 1.0) return;
   MatrixXd about = about_centre(node_positions(structure));
-  if (can_turn(structure, about)) start_ = std::move(about);
+  if (!can_turn(structure, about)) return;
+  start_ = std::move(about);
+  for (const ReportedSurface& surface : structure.surfaces) also_ += ", and " + surface.name;
 }
 
 std::string TurnedFrame::at(const System& system, const State& state) {
@@ -69,10 +71,9 @@ std::string TurnedFrame::at(const System& system, const State& state) {
   if (!said_) return "";
   return "at t = " + seconds(state.t) +
          ": the structure turns in space, by a degree so far. Its fold angle is measured along the "
-         "directions "
-         "of t = 0: from here on it is off, and so are forces and drives that act on it and the time at "
-         "which "
-         "it counts as deployed";
+         "directions of t = 0: from here on it is off, and so are forces and drives that act on it and the "
+         "time at which it counts as deployed" +
+         also_;
 }
 
 }  // namespace unfurl

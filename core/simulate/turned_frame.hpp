@@ -28,7 +28,8 @@ class TurnedFrame {
   void archive(Archive& archive) { archive(said_); }
 
  private:
-  MatrixXd start_;  // 3 n, about the centre; empty: there is nothing to be watched
+  MatrixXd start_;    // 3 n, about the centre; empty: there is nothing to be watched
+  std::string also_;  // what else is measured along the directions of t = 0
   bool said_ = false;
 };
 

@@ -2,23 +2,33 @@
 #include "core/structure/time_function.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "core/math/types.hpp"
 
 namespace unfurl {
 namespace {
 
+// Which share of `duration` is over at t: none and all of it also where that is so but for the rounding of
+// times, of which a short ramp makes an acceleration.
+double share_over(double start, double duration, double t) {
+  const double s = t - start, rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
+  return s <= rounding ? 0.0 : s >= duration - rounding ? 1.0 : s / duration;
+}
+
 double rate_part(const TimeFunction& f, int order, double t) {
   const double s = t - f.start;
-  if (s <= 0) return order == 1 && s == 0 && f.ramp == 0 ? f.rate : 0.0;
-  if (s >= f.ramp) return order == 0 ? f.rate * (s - 0.5 * f.ramp) : order == 1 ? f.rate : 0.0;
-  const double u = s / f.ramp;
+  if (s <= 0 || f.ramp == 0)
+    return s < 0 || (s == 0 && f.ramp > 0) || order == 2 ? 0.0 : order == 1 ? f.rate : f.rate * s;
+  const double u = share_over(f.start, f.ramp, t);
+  if (u == 1) return order == 0 ? f.rate * (s - 0.5 * f.ramp) : order == 1 ? f.rate : 0.0;
   if (order == 0) return f.rate * f.ramp * (u * u * u - 0.5 * u * u * u * u);
   return order == 1 ? f.rate * (3 * u * u - 2 * u * u * u) : f.rate / f.ramp * (6 * u - 6 * u * u);
 }
 
 double smooth_part(const TimeFunction& f, int order, double t) {
-  const double u = std::clamp((t - f.start) / f.duration, 0.0, 1.0), v = 1 - u;
+  const double u = share_over(f.start, f.duration, t), v = 1 - u;
   if (order == 0) return f.rise * u * u * u * (10 + u * (-15 + 6 * u));
   if (order == 1) return f.rise / f.duration * 30 * u * u * v * v;
   return f.rise / (f.duration * f.duration) * 60 * u * v * (v - u);
@@ -75,7 +85,7 @@ double TimeFunction::derivative(int order, double t) const {
 }
 
 bool make_jumps(TimeFunction& f, double near) {
-  if (f.kind == TimeFunction::Kind::rate && f.ramp < near) {
+  if (f.kind == TimeFunction::Kind::rate && (f.start + f.ramp) - f.start < near) {
     constexpr double at_once = 0.01;  // of that: no step ends between the start and that time
     f.start += 0.5 * f.ramp;
     f.ramp = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/simulate/simulation.hpp"
 #include "core/study/table.hpp"
@@ -122,13 +123,18 @@ class Search {
 
   void refine() {
     int side = 0;  // which end stayed last time (Illinois)
+    bool tried_nothing = false;
     double fa = a_.value - target_, fb = b_.value - target_;
     while (a_.x != b_.x && !exact(best_)) {
       const double width = std::abs(b_.x - a_.x);
       if (width <= o_.x_tolerance * std::max(std::abs(a_.x), std::abs(b_.x))) return;
       double x = (a_.x * fb - b_.x * fa) / (fb - fa);
       if (!std::isfinite(x) || (x - a_.x) * (x - b_.x) >= 0 || ++slow_ % 4 == 0) x = 0.5 * (a_.x + b_.x);
+      // An answer of nothing: no width is small beside it.
+      const bool nothing = a_.x * b_.x < 0 && !std::exchange(tried_nothing, true);
+      if (nothing) x = 0;
       const Evaluation e = at(x);
+      if (nothing && !valid(e)) continue;
       if (!valid(e)) give_up("the measure is not there for a parameter of " + short_number(x, 9));
       const double fe = e.value - target_;
       if ((fe < 0) == (fa < 0)) {

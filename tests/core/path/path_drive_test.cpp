@@ -90,4 +90,42 @@ TEST_CASE("a drive may go far in a step") {
   }
 }
 
+// A slider-crank whose slider is guided by a line, or by what holds its height.
+TEST_CASE("what is held does not change with time: a path as of any other guide") {
+  const auto crank = [](const std::string& guide) {
+    return read_scene_text(R"toml(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [0.3, 0, 0.4]},
+  {name = "C", position = [1.4, 0, 0.1], mass = 2}]
+rods = [{nodes = ["A", "B"], mass = 1}, {nodes = ["B", "C"], mass = 3}]
+[[constraints]]
+kind = "plane"
+nodes = ["B", "C"]
+normal = [0, 1, 0]
+[[constraints]]
+nodes = ["C"]
+)toml" + guide + R"toml(
+[[loads]]
+nodes = ["C"]
+force = [3, 0, 0]
+[solver]
+step = 0.01
+stages = 6
+end_time = 0.4
+)toml",
+                           "s.toml", {});
+  };
+  const Scene line = crank("kind = \"line\"\ndirection = [1, 0, 0]"),
+              held = crank("kind = \"coordinate\"\ndirection = [0, 0, 1]");
+  const Simulation by_line = simulate_on_path(build_model(line), line.solver),
+                   by_hold = simulate_on_path(build_model(held), held.solver),
+                   full = simulate(build_model(held), held.solver);
+  REQUIRE(by_hold.status == RunStatus::completed);
+  CHECK((testing::end_positions(by_hold) - testing::end_positions(by_line)).lpNorm<Eigen::Infinity>() <
+        1e-11);
+  CHECK((testing::end_positions(by_hold) - testing::end_positions(full)).lpNorm<Eigen::Infinity>() < 1e-11);
+  CHECK(testing::end_positions(full)[6] > 1.401);
+}
+
 }  // namespace path_drive_test

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/diagnostics/accuracy.hpp"
 #include "core/integrators/integrator.hpp"
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
@@ -247,6 +248,39 @@ TEST_CASE("impossible scenes are refused by the names of their members") {
                 "m") != std::string::npos);
   CHECK(error_of(crank, {"structure.constraints.motor.nodes=['P', 'O', 'B']"}).find("there is no node 'B'") !=
         std::string::npos);
+}
+
+// A pendulum of 1 m whose pivot is drawn along x. A ramp is a jump in its middle but for what moves
+// meanwhile: of 1e-6 s in half a second some 1e-6 m.
+TEST_CASE("a ramp of any shortness is followed, wherever its ends are rounded") {
+  const std::string pendulum = R"(
+[structure]
+kind = "custom"
+nodes = [
+  {name = "A", position = [0, 0, 0], mass = 1}, {name = "P", position = [0, 0, -1], mass = 1},
+  {name = "D", position = [3, 0, 0], fixed = true}]
+rods = [{nodes = ["A", "P"], mass = 0}]
+constraints = [
+  {kind = "plane", nodes = ["P"], normal = [0, 1, 0]}, {kind = "line", nodes = ["A"], direction = [1, 0, 0]},
+  {kind = "coordinate", name = "drive", nodes = ["A"], direction = [1, 0, 0], motion = "rate", rate = 1}]
+[solver]
+step = 0.01
+end_time = 0.5
+)";
+  const auto run = [&](double start, double ramp) {
+    return run_scene(pendulum, {"structure.constraints[2].start=" + testing::number(start),
+                                "structure.constraints[2].ramp=" + testing::number(ramp)});
+  };
+  for (const double start : {0.1, 0.3, 0.07, 0.29, 0.4})
+    for (const double ramp : {9.9e-10, 1e-9, 1.02e-9, 1.1e-9, 1.3e-9, 1e-8, 1e-7, 1e-6}) {
+      Simulation ramped = run(start, ramp);
+      const Simulation at_once = run(start + 0.5 * ramp, 0);
+      judge(ramped);
+      INFO(start << " s, " << ramp << " s: " << ramped.message);
+      REQUIRE(ramped.status == RunStatus::completed);
+      CHECK(ramped.warnings.empty());
+      CHECK((end_positions(ramped) - end_positions(at_once)).lpNorm<Eigen::Infinity>() < 1e-9 + 10 * ramp);
+    }
 }
 
 }  // namespace drive_test

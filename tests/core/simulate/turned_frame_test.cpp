@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/scene/library.hpp"
+#include "core/structure/node_positions.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -54,6 +55,20 @@ TEST_CASE("a turn of the whole is seen from a degree on, deploying is not") {
       CHECK(seen(axis, x));
     }
   }
+}
+
+TEST_CASE("the error of a surface is about the axis of the start, too") {
+  const auto said = [](const char* scene) {
+    const auto model = build_model(read_scene_file(find_scene(scene), {"structure.fold_angle=60"}));
+    VectorXd q = node_positions(model->structure);
+    for (Index k = 0; k < q.size(); k += 3)
+      q.segment<3>(k) = Eigen::AngleAxisd(0.05, Vec3::UnitX()) * Vec3(q.segment<3>(k));
+    State state;
+    state.z = model->system.reduce(q);
+    return TurnedFrame(model->structure).at(model->system, state);
+  };
+  CHECK(said("mesh_reflector").ends_with("counts as deployed, and surface_rms_m"));
+  CHECK(said("cable_ring").ends_with("counts as deployed"));
 }
 
 TEST_CASE("a floating ring that its loads turn says that its fold angle is off, once") {

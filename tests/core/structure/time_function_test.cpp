@@ -76,4 +76,22 @@ TEST_CASE("the spline through a cubic that rests at both ends is that cubic") {
   for (double t = from; t < from + T; t += 0.0731) CHECK(two(t) == Approx(cubic(t)).epsilon(1e-13));
 }
 
+// What is rounded of start + duration is 1e-16 of the time, of a ramp of 1e-9 s 1e-6: without care an
+// acceleration of 1e-6 rate / ramp.
+TEST_CASE("a short ramp has no acceleration left at its end as doubles add it") {
+  for (int i = 1; i < 200; ++i)
+    for (const double ramp : {1.1e-9, 3.3e-8, 1e-6}) {
+      TimeFunction f;
+      f.kind = TimeFunction::Kind::rate, f.start = 0.1 * i, f.rate = 2, f.ramp = ramp;
+      const double end = f.start + ramp;
+      CHECK(f.derivative(2, end) == 0);
+      CHECK(f.derivative(1, end) == 2);
+      CHECK(f.derivative(2, f.start) == 0);
+      CHECK(f.derivative(2, f.start + 0.5 * ramp) == Approx(3 / ramp).epsilon(1e-4));
+      f.kind = TimeFunction::Kind::smooth, f.rise = 0.3, f.duration = ramp;
+      CHECK(f.derivative(2, end) == 0);
+      CHECK(f(end) == 0.3);
+    }
+}
+
 }  // namespace time_function_test

@@ -58,6 +58,19 @@ TEST_CASE("the bracket of a root begins with its lower end and holds the value")
 }
 
 // As of a step that goes to zero: 1/x runs' time at x, for a target that is nowhere.
+TEST_CASE(
+    "an answer of zero is found as soon as it is bracketed, and a measure that is not there is no wall") {
+  for (const int power : {1, 2, 5}) {
+    CAPTURE(power);
+    const auto f = [&](double x) { return std::copysign(std::pow(std::abs(x), power), x); };
+    const Solved s = solve_for(f, 0, {.start = 0.7, .low = -1, .high = 2}, {});
+    CHECK(s.x == 0);
+    CHECK(s.evaluations.size() < 10);
+  }
+  const auto gap = [](double x) { return x == 0 ? none : x - 0.3; };
+  CHECK(solve_for(gap, 0, {.start = 0.7, .low = -1, .high = 2}, {}).x == Approx(0.3).epsilon(1e-11));
+}
+
 TEST_CASE("a search gives a side up where runs take longer and longer") {
   double time = 0;
   SolveOptions options{.start = 0.02};
