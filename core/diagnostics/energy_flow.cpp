@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/diagnostics/quintic.hpp"
+#include "core/integrators/integrator.hpp"
 #include "core/integrators/row_noise.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/push_responses.hpp"
@@ -22,12 +23,18 @@ bool motors_or_warmed(const Structure& s) {
          std::ranges::any_of(s.rods, [](const Rod& r) { return r.gives && r.expansion != 0; });
 }
 
+bool lets_ring(const SolverOptions& options) {
+  const Method* method = find_method(options.method);
+  return method && method->claims(options).lets_ring;
+}
+
 namespace {
 constexpr double stiff_at = 2;  // times 1 / h, from which c / m is
 }
 
-EnergyMeter::EnergyMeter(const System& system)
+EnergyMeter::EnergyMeter(const System& system, bool lets_ring)
     : system_(system),
+      lets_ring_(lets_ring),
       loads_(system.has_power(false)),
       dampers_(system.has_power(true)),
       drives_(system.rheonomic()) {
@@ -97,9 +104,9 @@ double EnergyMeter::damping_power(const State& state, const VectorXd& accelerati
 // A rate that is gone long before the step's end, with most of the power, or that has come about right behind
 // its start, is not to be had from the ends, nor one that a method lets ring about what it is: it lost what
 // the energies lost beyond the work of others, as in an impact, `lost`. What that is less than nothing, or
-// more than these powers could take, is an error of the method, which the balance is to tell. Rates that ring
-// are energy that a damper has taken long since: it is booked when the ringing begins, and what is left of it
-// in a state is what the balance is off.
+// more than these powers could take, is an error of the method, which the balance is to tell. Where a method
+// lets them ring for long, that is energy that a damper has taken long since: it is booked when the ringing
+// begins, and what is left of it in a state is what the balance is off.
 //
 // Where the motion between the states has the same power, `between`, that is taken: what its interpolant is
 // off where two motions are nearly one has a power of its own. All powers are those of what stiff dampers
@@ -119,8 +126,9 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
   if (gone || rings_) {
     double most_lost =
         std::max({most_power_, at_start - ringing_.power_a, at_end - ringing_.power_b, 0.0}) * h;
-    if (!rings_) most_lost = std::max(most_lost, between);
-    return std::clamp(lost, 0.0, most_lost + std::max(ringing_.at_a - ringing_.at_b, 0.0));
+    const double by_ringing = ringing_.at_a - ringing_.at_b;
+    if (!lets_ring_ || !rings_) most_lost = std::max(most_lost, between);
+    return by_ringing + std::clamp(lost - by_ringing, 0.0, most_lost);
   }
   const double line = 0.5 * h * (at_start + at_end);
   double bend = h * h / 12 * (rate(a, before_.acceleration, e) - rate(b, after_.acceleration, -e));
@@ -239,8 +247,7 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   for (Index i = 0; i < mean.size(); ++i) {
     const Rates& damped = rates[static_cast<std::size_t>(i)].damped;  // of those that it stands for
     stiff_[i] = stiff_[damped_[static_cast<std::size_t>(i)]];
-    if (stiff_[i] > 0 && rings(damped)) {
-      most_power_ += damped.mean;
+    if (lets_ring_ && stiff_[i] > 0 && rings(damped)) {
       ringing_.power_a += damped.at_a, ringing_.power_b += damped.at_b;
       ringing_.at_a += damped.energy(damped.at_a), ringing_.at_b += damped.energy(damped.at_b);
     } else {
@@ -323,9 +330,10 @@ double other_loads(const System& from, const System& to, const VectorXd& z) {
 
 }  // namespace
 
-RunEnergyFlow::RunEnergyFlow(const Trajectory& run, bool booked)
+RunEnergyFlow::RunEnergyFlow(const Trajectory& run, bool booked, bool lets_ring)
     : trajectory_(run),
       booked_(booked),
+      lets_ring_(lets_ring),
       drives_(drive_channels(run.model())),
       flow_{{0.0}, {0.0}, {0.0}, {0.0}, std::vector(drives_.size(), std::vector{0.0})} {}
 
@@ -333,7 +341,7 @@ void RunEnergyFlow::meter_of(const Model& model) {
   if (model_ == &model) return;
   if (meter_) flow_.dissipated.back() -= meter_->jump();
   model_ = &model;
-  meter_ = std::make_unique<EnergyMeter>(model.system);
+  meter_ = std::make_unique<EnergyMeter>(model.system, lets_ring_);
   meter_->at_point = [this](double weight, double t, const VectorXd& q, const VectorXd& v,
                             const VectorXd& lambda) {
     for (std::size_t d = 0; d < drives_.size(); ++d)

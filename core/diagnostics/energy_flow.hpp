@@ -25,6 +25,8 @@ struct EnergyFlow {
 // Whether something besides loads gives work by a law of its own: motors, winches, elastic rods that warm.
 bool motors_or_warmed(const Structure& structure);
 
+bool lets_ring(const SolverOptions& options);  // the method does (Claims)
+
 // What dry friction takes is exact: a force times the way. Powers are integrated over each step with three
 // Gauss points (order 6) on the quintic that has the coordinates, rates and accelerations of the states at
 // both ends: an independent quadrature, whatever the method, of order 6 where the forces are smooth within
@@ -38,7 +40,7 @@ bool motors_or_warmed(const Structure& structure);
 // through coordinates and rates: order 4.
 class EnergyMeter {
  public:
-  explicit EnergyMeter(const System& system);
+  explicit EnergyMeter(const System& system, bool lets_ring = false);
   // Nothing goes in or out but by potentials and constant loads: no step needs to be added.
   bool idle() const { return !loads_ && !dampers_ && !drives_; }
   // The step from a to b, which follows on the last one; `at_b` where that is known of b already.
@@ -77,7 +79,7 @@ class EnergyMeter {
   double taken_by_stiff(const State& a, const State& b, double fastest, double between, double lost);
 
   System system_;  // follows the states
-  bool loads_, dampers_, drives_;
+  bool lets_ring_, loads_, dampers_, drives_;
   std::unique_ptr<Index1> index1_;
   SolvedPoint before_, after_;
   bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since
@@ -92,7 +94,7 @@ class EnergyMeter {
 // The same along the states of a run, each in its turn; zeros unless it is `booked`.
 class RunEnergyFlow {
  public:
-  RunEnergyFlow(const Trajectory& run, bool booked);
+  RunEnergyFlow(const Trajectory& run, bool booked, bool lets_ring);
   // The step that ends in state i > 0; `forces` of the run, where they are asked for anyway: one
   // factorisation a state serves both.
   void step_to(std::size_t i, StateForces* forces);
@@ -103,7 +105,7 @@ class RunEnergyFlow {
   bool explain_impulse(const Model& rows, const State& a, const State& b, double gain);
 
   const Trajectory& trajectory_;
-  bool booked_;
+  bool booked_, lets_ring_;
   std::vector<DriveChannel> drives_;
   EnergyFlow flow_;
   std::unique_ptr<EnergyMeter> meter_;

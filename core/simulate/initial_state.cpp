@@ -71,7 +71,8 @@ InitialState initial_state(const Structure& structure, const System& system) {
     s.w = fitted_rates(system, 0.0, q, v);
     system.expand_rate(s.w, back);
     const Index in_space = space_coordinates(structure);
-    out.velocity_change = in_space > 0 ? (back - v).head(in_space).lpNorm<Eigen::Infinity>() : 0.0;
+    const Eigen::Matrix3Xd change = (back - v).head(in_space).reshaped(3, in_space / 3);
+    out.velocity_change = in_space > 0 ? change.colwise().norm().maxCoeff() : 0.0;
   }
   System followed = system.at(s);
   followed.count_on(s);
@@ -84,7 +85,7 @@ InitialState initial_state(const Structure& structure, const System& system) {
 std::string velocity_warning(const InitialState& start, const Structure& structure) {
   double fastest = 0;
   for (const Node& node : structure.nodes)
-    if (!node.ghost) fastest = std::max(fastest, node.velocity.lpNorm<Eigen::Infinity>());
+    if (!node.ghost) fastest = std::max(fastest, node.velocity.norm());
   if (start.velocity_change <= 1e-9 * fastest) return {};
   std::ostringstream text;
   text << "the initial velocities violate the constraints and were projected on them (largest change "

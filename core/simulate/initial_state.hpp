@@ -14,7 +14,7 @@ namespace unfurl {
 // energy of the change) and the multipliers of the index-1 equations.
 struct InitialState {
   State state;
-  double velocity_change = 0;  // max norm of what the projection took away [m/s]
+  double velocity_change = 0;  // largest of the nodes: what the projection took away [m/s]
 };
 InitialState initial_state(const Structure& structure, const System& system);
 

@@ -135,6 +135,11 @@ class Search {
       if (nothing) x = 0;
       const Evaluation e = at(x);
       if (nothing && !valid(e)) continue;
+      if (constexpr double rounding = 1e-15;
+          nothing && std::abs(e.value - target_) <= rounding * std::max(std::abs(fa), std::abs(fb))) {
+        a_ = b_ = best_ = e;
+        return;
+      }
       if (!valid(e)) give_up("the measure is not there for a parameter of " + short_number(x, 9));
       const double fe = e.value - target_;
       if ((fe < 0) == (fa < 0)) {

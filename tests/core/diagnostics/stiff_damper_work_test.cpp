@@ -260,16 +260,16 @@ free_length = 1
     }
 }
 
-// Two masses of 1 kg, 1 m/s apart, of which a damper between them takes 1/4 J: by a method whose rates ring,
-// too, where the balance is what still rings, and not by one that explodes there, whose error is none of the
-// damper's. What a third mass loses to the method, on a spring of its own, is none either.
-TEST_CASE("a stiff damper takes what is there, and gives nothing where a method explodes") {
-  const auto apart = [](const char* method, double by, const std::string& third = "") {
-    return testing::run_scene(R"([structure]
+namespace {
+
+// Two masses of 1 kg, 1 m/s apart, of which a damper between them takes 1/4 J.
+Simulation apart(const char* method, double by, const std::string& nodes = "", const std::string& more = "") {
+  return testing::run_scene(R"([structure]
 kind = "custom"
 rods = []
 nodes = [{name = "U", position = [0, 0, 0], mass = 1, velocity = [1, 0, 0]},
-  {name = "V", position = [1, 0, 0], mass = 1}]
+  {name = "V", position = [1, 0, 0], mass = 1})" +
+                            nodes + R"(]
 [[constraints]]
 kind = "line"
 nodes = ["U", "V"]
@@ -279,9 +279,14 @@ kind = "spring"
 nodes = ["U", "V"]
 stiffness = 0
 damping = )" + testing::number(by) +
-                              third + "\n[solver]\nmodel = 'full'\nstep = 0.01\nend_time = 0.1\nmethod = '" +
-                              method + "'\n");
-  };
+                            "\n" + more +
+                            "[solver]\nmodel = 'full'\nstep = 0.01\nend_time = 0.1\nmethod = '" + method +
+                            "'\n");
+}
+
+}  // namespace
+
+TEST_CASE("a stiff damper gives nothing where a method explodes, whose error is none of the damper's") {
   for (const double by : {200.0, 300.0, 1000.0})
     for (const char* method : {"rk4", "rk4_projected", "rk4_baumgarte"}) {
       CAPTURE(method, by);
@@ -291,29 +296,27 @@ damping = )" + testing::number(by) +
       CHECK(kinetic > 1);
       CHECK(testing::largest(d, "energy_balance_J") > 0.5 * kinetic);
     }
-  for (const double by : {1e4, 1e6}) {
+}
+
+// By a method that lets rates ring, too: as the exact motion has it, at once, to 1e-6 of rates that are gone
+// (of 500 N s/m, where one does not know what rings when it does so no more, to 2 %); what still rings is
+// what the balance is off. What a third mass loses to the method, on a spring of its own, is none of the
+// damper's.
+TEST_CASE("a stiff damper takes what is there where rates ring, and the balance is what rings") {
+  for (const double by : {500.0, 1e4, 1e6}) {
     CAPTURE(by);
     const Diagnostics d = diagnose(apart("generalized_alpha", by));
     for (std::size_t i = 1; i < d.t.size(); ++i) {
       const double rings = d.at("kinetic_energy_J").values[i] - 0.25;
-      CHECK(rings > 0.01);
-      CHECK(d.at("dissipated_J").values[i] == Approx(0.25).epsilon(1e-6));
-      CHECK(d.at("energy_balance_J").values[i] == Approx(rings).epsilon(1e-6));
+      CHECK(rings > (by > 1e3 ? 0.01 : 0.0));
+      CHECK(d.at("dissipated_J").values[i] == Approx(0.25).epsilon(by > 1e3 ? 1e-6 : 0.02));
+      CHECK(d.at("energy_balance_J").values[i] == Approx(rings).margin(by > 1e3 ? 1e-7 : 5e-3));
     }
   }
-  const Diagnostics soft = diagnose(apart("generalized_alpha", 500));
-  CHECK(testing::largest(soft, "energy_balance_J") < 0.01);
-  const Diagnostics beside = diagnose(apart("generalized_alpha", 1e4, R"(
-[[structure.nodes]]
-name = "O"
-position = [9, 0, 0]
-fixed = true
-[[structure.nodes]]
-name = "W"
-position = [7, 0, 0]
-velocity = [4, 0, 0]
-mass = 1
-[[constraints]]
+  const Diagnostics beside =
+      diagnose(apart("generalized_alpha", 1e4, R"(, {name = "O", position = [9, 0, 0], fixed = true},
+  {name = "W", position = [7, 0, 0], velocity = [4, 0, 0], mass = 1})",
+                     R"([[constraints]]
 kind = "line"
 nodes = ["W"]
 direction = [1, 0, 0]

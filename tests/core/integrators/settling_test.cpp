@@ -50,7 +50,7 @@ end_time = 0.3
 // One of them at 1 m/s, or both at 1/2: the damper takes 1/4 J. Of rates exp(-2 c t / m) nothing is left a
 // quarter of a second later; at c h / m of a few its layer is resolved to 1e-4.
 TEST_CASE("a stiff damper stops what an impact moves, however shortly before the end of a step") {
-  for (const double damping : {270.0, 1e3, 5e4, 5e5, 4.47e8})
+  for (const double damping : {270.0, 1e3, 5e4, 5e5, 4.47e6})
     for (const double before : {0.0, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 5e-3}) {
       CAPTURE(damping, before);
       Simulation run = testing::run_scene(blow(before, damping));
@@ -60,6 +60,44 @@ TEST_CASE("a stiff damper stops what an impact moves, however shortly before the
       CHECK(v[0] == Approx(-0.5).margin(1e-6));
       CHECK(v[3] == Approx(-0.5).margin(1e-6));
       CHECK(d.at("dissipated_J").values.back() == Approx(0.25).epsilon(2e-3));
+    }
+}
+
+// P goes at 1 m/s at once, U follows on a damper: at 1 m/s, for which the damper takes 1/2 J. By steps of a
+// fixed size, and of one that an error picks.
+TEST_CASE("what follows a drive's jump on a stiff damper follows it, wherever in a step that is") {
+  for (const std::string& steps : {std::string("stages = 3"), std::string("adaptive = true")})
+    for (const double start : {0.1, 0.0999, 0.09999, 0.099999, 0.0999999, 0.103}) {
+      CAPTURE(steps, start);
+      Simulation run = testing::run_scene(R"([structure]
+kind = "custom"
+rods = []
+nodes = [{name = "P", position = [0, 0, 0], mass = 1}, {name = "U", position = [1, 0, 0], mass = 1}]
+[[constraints]]
+kind = "line"
+nodes = ["P", "U"]
+direction = [1, 0, 0]
+[[constraints]]
+kind = "coordinate"
+nodes = ["P"]
+direction = [1, 0, 0]
+motion = "rate"
+rate = 1
+start = )" + testing::number(start) + R"(
+[[forces]]
+kind = "spring"
+nodes = ["P", "U"]
+stiffness = 0
+damping = 1e5
+[solver]
+model = "full"
+step = 0.01
+end_time = 0.3
+)" + steps + "\n");
+      const Diagnostics d = judge(run);
+      REQUIRE(run.status == RunStatus::completed);
+      CHECK(run.trajectory.node_velocities(run.trajectory.size() - 1)[3] == Approx(1).margin(1e-6));
+      CHECK(d.at("dissipated_J").values.back() == Approx(0.5).epsilon(2e-3));
     }
 }
 
@@ -73,7 +111,7 @@ TEST_CASE("layers of dampers go on over the ends of steps, and nothing that is c
   double t = 0.5e-3, longest = 0.6e-3;
   while (t < 20) {
     const double h = step(1.0, 1e3);
-    CHECK(h <= 1.5001 * longest);
+    CHECK(h <= 2.0001 * longest);
     longest = std::max(h, longest);
     t += h;
   }

@@ -67,6 +67,10 @@ TEST_CASE(
     CHECK(s.x == 0);
     CHECK(s.evaluations.size() < 10);
   }
+  const auto noisy = [](double x) { return x + 2e-16; };  // one more rounding of what is 1 elsewhere
+  const Solved rounded = solve_for(noisy, 0, {.start = 0.7, .low = -1, .high = 2}, {});
+  CHECK(rounded.x == 0);
+  CHECK(rounded.evaluations.size() < 10);
   const auto gap = [](double x) { return x == 0 ? none : x - 0.3; };
   CHECK(solve_for(gap, 0, {.start = 0.7, .low = -1, .high = 2}, {}).x == Approx(0.3).epsilon(1e-11));
 }
