@@ -11,6 +11,7 @@
 
 #include "core/math/linear_elimination.hpp"
 #include "core/path/entry_turns.hpp"
+#include "core/structure/measure.hpp"
 #include "core/structure/node_positions.hpp"
 
 namespace unfurl {
@@ -243,6 +244,21 @@ class Trial {
         [](const Force& f) { return f.name; });
   }
 
+  // Coordinates are others where a turn about another axis than one through the origin takes them: by what
+  // they are in the pose at the start, all that is prescribed of them is.
+  Constraint turned(const Constraint& from, const VectorXd& q) const {
+    Constraint out = step_.constraint(from);
+    if (from.kind != "measure" || is_angle(from.measure)) return out;
+    const auto at_start = [&](const Measure& measure) {
+      return MeasureFunction(measure, structure_.deployment).value(q.data());
+    };
+    const double farther = at_start(out.measure) - at_start(from.measure);
+    if (!(std::abs(farther) > 1e-9 * size_)) return out;  // rounding
+    out.target.offset += farther;
+    for (double& value : out.target.values) value += farther;
+    return out;
+  }
+
   std::vector<int> turned_constraints() {
     static constexpr std::array known{"measure", "collinear", "coplanar"};
     std::vector<Constraint> rest;
@@ -256,8 +272,9 @@ class Trial {
       rest.push_back(c);
       place.push_back(static_cast<int>(i));
     }
+    const VectorXd q = node_positions(structure_);
     const std::vector<int> rest_to = onto(
-        rest, [&](const Constraint& c) { return step_.constraint(c); }, key_of<Constraint>,
+        rest, [&](const Constraint& c) { return turned(c, q); }, key_of<Constraint>,
         [](const Constraint& c) { return c.name; });
     std::vector<int> to(structure_.constraints.size());
     for (std::size_t i = 0; i < to.size(); ++i) to[i] = static_cast<int>(i);  // linear: looked at elsewhere

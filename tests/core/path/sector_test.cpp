@@ -306,4 +306,55 @@ end_time = 0.3
   }
 }
 
+// Five masses whose radial coordinates are held, one of them drawn out, or relate to those of others: what a
+// coordinate is elsewhere is no other ring.
+TEST_CASE("a ring about any axis is solved as a sector, what its coordinates are held at, too") {
+  const auto ring = [](const std::string& centre, const std::string& held, const std::string& more) {
+    return read_scene_text("[variables]\nn = 5\ncx = " + centre + R"toml(
+[structure]
+kind = "custom"
+[[structure.nodes]]
+repeat = {i = "0:n"}
+name = "P{i}"
+position = ["=cx+cos(2*pi*i/n)", "=sin(2*pi*i/n)", 0]
+velocity = ["=-0.3*sin(2*pi*i/n)", "=0.3*cos(2*pi*i/n)", 0.1]
+mass = 1
+[[structure.nodes]]
+repeat = {i = "0:n"}
+name = "Q{i}"
+position = ["=cx+1.3*cos(2*pi*(i+0.2)/n)", "=1.3*sin(2*pi*(i+0.2)/n)", 0.3]
+mass = 1
+[[structure.rods]]
+repeat = {i = "0:n"}
+nodes = ["P{i}", "Q{i}"]
+mass = 0.25
+[[constraints]]
+repeat = {i = "0:n"}
+kind = "coordinate"
+direction = ["=cos(2*pi*i/n+0.3)", "=sin(2*pi*i/n+0.3)", 0]
+)toml" + held + "\n" + more + "[solver]\nstep = 0.01\nend_time = 0.3\n",
+                           "ring.toml", {});
+  };
+  const auto run = [](Scene scene, const char* model) {
+    scene.solver.model = model;
+    return simulate_as_asked(build_model(scene), scene.solver);
+  };
+  const std::string drawn = "nodes = [\"P{i}\"]\nmotion = \"rate\"\nrate = 0.2\nramp = 0.1\n",
+                    smooth =
+                        "nodes = [\"P{i}\"]\nmotion = \"smooth\"\nduration = 0.2\n"
+                        "to = \"=cx*cos(2*pi*i/n+0.3)+cos(0.3)+0.1\"\n";
+  for (const std::string& held : {std::string("nodes = [\"P{i}\"]\n"), drawn, smooth})
+    for (const char* centre : {"0", "1.5", "-40"}) {
+      CAPTURE(held, centre);
+      const Simulation one = run(ring(centre, held, ""), "sector"),
+                       full = run(ring(centre, held, ""), "full");
+      REQUIRE(one.status == full.status);
+      const std::size_t last = full.trajectory.size() - 1;
+      CHECK(node_distance(one.trajectory.positions(last), full.trajectory.positions(last)) <= 1e-11);
+    }
+  const std::string third =
+      "[[constraints]]\nkind = \"coordinate\"\nnodes = [\"Q2\"]\ndirection = [0, 0, 1]\n";
+  CHECK_THROWS_AS(run(ring("1.5", "nodes = [\"P{i}\"]\n", third), "sector"), SectorRefused);
+}
+
 }  // namespace sector_test
