@@ -175,14 +175,17 @@ std::vector<Index> parts_of(const System& system, const SparseRows* dampers = nu
 // At either end of a step, in the mean, and of what that is off the mean of the ends: squares.
 struct Rates {
   double at_a = 0, at_b = 0, mean = 0, off = 0;
-  double change = 0, inertia = 0;  // of the change within the step: its power, its own square by masses
+  // Of the change within the step its power, its square by masses, its power with what the three others are.
+  double change = 0, inertia = 0, with_a = 0, with_b = 0, with_mean = 0;
   // They are others behind the start, or before the end, than there: of the time between the mean alone
   // tells. A rate that falls as exp(-c t / m) has less than a sixth of the step for it.
   bool gone() const { return 9 * off > std::max({at_a, at_b, mean}); }
   // They change their sign from state to state.
   bool ring() const { return 2 * mean < std::min(at_a, at_b); }
-  // What then changes is what rings: the kinetic energy of what has that power.
-  double energy(double power) const { return change > 0 ? 0.5 * power * inertia / change : 0.0; }
+  // What changes then is what rings: of rates whose power with it is this, the power and kinetic energy of
+  // what they have of it.
+  double ringing(double with) const { return change > 0 ? with * with / change : 0.0; }
+  double energy(double with) const { return change > 0 ? 0.5 * ringing(with) * inertia / change : 0.0; }
 };
 // Of a part: its rates. Of what dampers join besides: those that they tell from what it does as a whole, by
 // the powers that they would take of them.
@@ -192,6 +195,15 @@ struct PartRates {
 };
 
 }  // namespace
+
+// What rates change by within the step beyond what they do as mean ones, from the last step to this.
+VectorXd EnergyMeter::fast_change(const State& a, const State& b, const VectorXd& mean) {
+  VectorXd change = b.w - a.w;
+  const double h = b.t - a.t;
+  if (fresh_mean_ && mean_until_ == a.t) change -= 2 * h / (h + mean_over_) * (mean - last_mean_);
+  last_mean_ = mean, mean_until_ = b.t, mean_over_ = h, fresh_mean_ = true;
+  return change;
+}
 
 // Where a stiff damper moves coordinates, accelerations are what rounding and the method leave of rates times
 // c / m, there and in what hangs together with them. The rest tells their motion to order 4: the quintic is
@@ -216,8 +228,8 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   const auto power = [&](const VectorXd& w) { return VectorXd(-w.cwiseProduct(by_w * w)); };
   const VectorXd bounds = rate_bounds(by_w, system_.mass()), mean = (b.z - a.z) / h;
   const VectorXd of_a = power(a.w), of_b = power(b.w), of_mean = power(mean),
-                 of_off = power(mean - 0.5 * (a.w + b.w)), of_change = power(b.w - a.w),
-                 inertia = (b.w - a.w).cwiseProduct(system_.mass() * (b.w - a.w));
+                 of_off = power(mean - 0.5 * (a.w + b.w)), change = fast_change(a, b, mean),
+                 push = -(by_w * change), inertia = change.cwiseProduct(system_.mass() * change);
   constexpr double of_energy = 1e-9;
   const double rounding = of_energy * std::max(system_.kinetic_energy(a.w), system_.kinetic_energy(b.w));
   const auto rings = [&](const Rates& damped) {
@@ -229,7 +241,9 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
     part.stiff |= h * bounds[i] > stiff_at;
     if (h * bounds[i] > stiff_at) stiff_[damped_[static_cast<std::size_t>(i)]] = 1;
     damped.at_a += of_a[i], damped.at_b += of_b[i], damped.mean += of_mean[i], damped.off += of_off[i];
-    damped.change += of_change[i], damped.inertia += inertia[i];
+    damped.change += push[i] * change[i], damped.inertia += inertia[i];
+    damped.with_a += push[i] * a.w[i], damped.with_b += push[i] * b.w[i],
+        damped.with_mean += push[i] * mean[i];
     part.all.at_a += square(a.w[i]), part.all.at_b += square(b.w[i]), part.all.mean += square(mean[i]);
     part.all.off += square(mean[i] - 0.5 * (a.w[i] + b.w[i]));
   }
@@ -248,8 +262,9 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
     const Rates& damped = rates[static_cast<std::size_t>(i)].damped;  // of those that it stands for
     stiff_[i] = stiff_[damped_[static_cast<std::size_t>(i)]];
     if (lets_ring_ && stiff_[i] > 0 && rings(damped)) {
+      most_power_ += std::max(damped.mean - damped.ringing(damped.with_mean), 0.0);
       ringing_.power_a += damped.at_a, ringing_.power_b += damped.at_b;
-      ringing_.at_a += damped.energy(damped.at_a), ringing_.at_b += damped.energy(damped.at_b);
+      ringing_.at_a += damped.energy(damped.with_a), ringing_.at_b += damped.energy(damped.with_b);
     } else {
       most_power_ += std::max({damped.at_a, damped.at_b, damped.mean, damped.off});
     }

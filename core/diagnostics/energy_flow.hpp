@@ -48,7 +48,7 @@ class EnergyMeter {
   // Velocities have changed within no time, or another meter goes on: what was booked ahead of what rings is
   // let go [J].
   double jump() {
-    fresh_ = false;
+    fresh_ = fresh_mean_ = false;
     dissipated -= booked_;
     return std::exchange(booked_, 0.0);
   }
@@ -69,6 +69,10 @@ class EnergyMeter {
     VectorXd by_a = {}, by_b = {};
   };
   Ends trusted_ends(const State& a, const State& b);
+  VectorXd fast_change(const State& a, const State& b, const VectorXd& mean);
+  VectorXd last_mean_;  // rates of the step that has ended at mean_until_, of size mean_over_
+  double mean_until_ = 0, mean_over_ = 0;
+  bool fresh_mean_ = false;
   bool gone_ = false, rings_ = false;  // in the last step of these, the rates of something
   double most_power_ = 0;              // of dampers there, but of those whose rates ring [W]
   struct Ringing {                     // at its ends: power [W], energy [J]

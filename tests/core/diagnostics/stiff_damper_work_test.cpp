@@ -313,6 +313,13 @@ TEST_CASE("a stiff damper takes what is there where rates ring, and the balance 
       CHECK(d.at("energy_balance_J").values[i] == Approx(rings).margin(by > 1e3 ? 1e-7 : 5e-3));
     }
   }
+  // Drag of 2 N s/m on one of them takes of both, 2 kg at 1/2 m/s, what exp(-2 t) leaves; gravity nothing.
+  const Diagnostics dragged = diagnose(
+      apart("generalized_alpha", 1e4, "", "[[forces]]\nkind = \"drag\"\nnodes = [\"U\"]\ndamping = 2\n"));
+  CHECK(last(dragged, "dissipated_J") == Approx(0.25 + 0.25 * (1 - std::exp(-0.2))).epsilon(0.01));
+  const Diagnostics falling =
+      diagnose(apart("generalized_alpha", 1e4, "", "[gravity]\nacceleration = [-10, 0, 0]\n"));
+  CHECK(last(falling, "dissipated_J") == Approx(0.25).epsilon(0.01));
   const Diagnostics beside =
       diagnose(apart("generalized_alpha", 1e4, R"(, {name = "O", position = [9, 0, 0], fixed = true},
   {name = "W", position = [7, 0, 0], velocity = [4, 0, 0], mass = 1})",
