@@ -185,6 +185,8 @@ struct Rates {
   // What changes then is what rings: of rates whose power with it is this, the power and kinetic energy of
   // what they have of it.
   double ringing(double with) const { return change > 0 ? with * with / change : 0.0; }
+  double most_ringing() const { return std::max(ringing(with_a), ringing(with_b)); }
+  bool rings_beside() const { return 2 * ringing(with_mean) < most_ringing(); }  // what they do else
   double energy(double with) const { return change > 0 ? 0.5 * ringing(with) * inertia / change : 0.0; }
 };
 // Of a part: its rates. Of what dampers join besides: those that they tell from what it does as a whole, by
@@ -233,7 +235,8 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   constexpr double of_energy = 1e-9;
   const double rounding = of_energy * std::max(system_.kinetic_energy(a.w), system_.kinetic_energy(b.w));
   const auto rings = [&](const Rates& damped) {
-    return damped.ring() && h * std::min(damped.at_a, damped.at_b) > rounding;
+    if (!lets_ring_) return damped.ring() && h * std::min(damped.at_a, damped.at_b) > rounding;
+    return damped.rings_beside() && h * damped.most_ringing() > rounding;
   };
   for (Index i = 0; i < mean.size(); ++i) {
     PartRates& part = of(parts_, i);

@@ -337,6 +337,42 @@ free_length = 2
   CHECK(last(beside, "energy_balance_J") < -1);
 }
 
+// U and V of 1 kg at 1 m/s, joined by a damper of any strength, U with a drag of 2 N s/m: but for the 1e-2
+// m/s that they differ by, 2 kg that lose all but exp(-2 t). Of order 2, to 1e-3 of it.
+TEST_CASE("what is lost beside rates that ring is lost to what takes it") {
+  for (const double by : {50.0, 500.0, 5e3, 5e5, 5e7})
+    for (const double rho : {1.0, 0.9, 0.5, 0.0}) {
+      CAPTURE(by, rho);
+      Simulation run = testing::run_scene(R"([structure]
+kind = "custom"
+rods = []
+nodes = [{name = "U", position = [0, 0, 0], mass = 1, velocity = [1, 0, 0]},
+  {name = "V", position = [1, 0, 0], mass = 1, velocity = [0.99, 0, 0]}]
+[[constraints]]
+kind = "line"
+nodes = ["U", "V"]
+direction = [1, 0, 0]
+[[forces]]
+kind = "spring"
+nodes = ["U", "V"]
+stiffness = 0
+damping = )" + testing::number(by) + R"(
+[[forces]]
+kind = "drag"
+nodes = ["U"]
+damping = 2
+[solver]
+method = "generalized_alpha"
+step = 0.01
+end_time = 1
+rho_inf = )" + testing::number(rho) + "\n");
+      const Diagnostics d = diagnose(run);
+      const double exact = 0.990025 * (1 - std::exp(-2.0));
+      CHECK(last(d, "dissipated_J") == Approx(exact).epsilon(by > 100 ? 1e-3 : 5e-3));
+      CHECK(testing::largest(d, "energy_balance_J") < 1e-3 * exact);
+    }
+}
+
 // U, which W throws back, is joined to V by a damper that is as good as stiff: it takes what U and V do not
 // have as one body, whatever they all do beside. That is, of U alone at 1 m/s, 1/2 J less 1/2 (1 / 101), what
 // the energies of 5 kJ are off is 1e-9 of them.
