@@ -104,7 +104,7 @@ int run_in_parts(const Scene& scene, const std::shared_ptr<const Model>& model, 
   } else if (arguments.resume) {
     refuse_to_resume(output.path());
   }
-  RunAhead ahead(arguments.threads, lets_ring(scene.solver));
+  RunAhead ahead(arguments.threads);
   parts.take = [&](Stepper::Window window, Stepper& stepper) {
     ahead.stop();
     unfinished.take(std::move(window), stepper, ahead.beside());

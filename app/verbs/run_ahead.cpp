@@ -43,8 +43,7 @@ bool holds(const Trajectory& run, std::size_t first, const Trajectory& piece) {
 
 }  // namespace
 
-RunAhead::RunAhead(int threads, bool lets_ring)
-    : on_(helpers(threads) > 0), lets_ring_(lets_ring), queue_(helpers(threads)) {}
+RunAhead::RunAhead(int threads) : on_(helpers(threads) > 0), queue_(helpers(threads)) {}
 
 void RunAhead::look(const Trajectory& run, std::size_t states) {
   if (!on_ || run.size() < next_ + states + unsettled) return;
@@ -70,7 +69,7 @@ void RunAhead::find_forces(const Trajectory& piece) {
   if (!seen_) {
     seen_.emplace(shared(piece.model()));
     solver_.emplace(*seen_);
-    flow_.emplace(*seen_, true, lets_ring_);
+    flow_.emplace(*seen_, true);
   }
   for (std::size_t k = 0; k < piece.size(); ++k) {
     if (&piece.model(k) != &seen_->last_model()) seen_->change_model(shared(piece.model(k)));

@@ -20,7 +20,7 @@ namespace unfurl {
 // done at once.
 class RunAhead {
  public:
-  explicit RunAhead(int threads, bool lets_ring = false);  // at most; 0: as many as the machine has
+  explicit RunAhead(int threads);  // at most; 0: as many as the machine has
 
   // For Parts::look; `states`: how many are looked at together.
   void look(const Trajectory& run, std::size_t states);
@@ -49,7 +49,7 @@ class RunAhead {
   void find_forces(const Trajectory& piece);  // and what flows in and out
   void drop();
 
-  bool on_, lets_ring_;
+  bool on_;
   std::size_t next_ = 0;  // state
   std::deque<Piece> pieces_;
   std::optional<Mobility> mobility_;

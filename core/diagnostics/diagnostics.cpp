@@ -324,7 +324,7 @@ class StateTable {
         books_(look == Look::books || look == Look::energies),
         uniqueness_(uniqueness),
         used_(columns(run, books_, out_)),
-        flow_(run.trajectory, look == Look::books || look == Look::all, lets_ring(run.options)),
+        flow_(run.trajectory, look == Look::books || look == Look::all),
         known_flow_(ahead.flow),
         forces_(run.trajectory, ahead.forces),
         fold_(run.trajectory.structure().deployment) {

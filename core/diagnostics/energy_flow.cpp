@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/diagnostics/quintic.hpp"
-#include "core/integrators/integrator.hpp"
 #include "core/integrators/row_noise.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/push_responses.hpp"
@@ -23,18 +22,12 @@ bool motors_or_warmed(const Structure& s) {
          std::ranges::any_of(s.rods, [](const Rod& r) { return r.gives && r.expansion != 0; });
 }
 
-bool lets_ring(const SolverOptions& options) {
-  const Method* method = find_method(options.method);
-  return method && method->claims(options).lets_ring;
-}
-
 namespace {
 constexpr double stiff_at = 2;  // times 1 / h, from which c / m is
 }
 
-EnergyMeter::EnergyMeter(const System& system, bool lets_ring)
+EnergyMeter::EnergyMeter(const System& system)
     : system_(system),
-      lets_ring_(lets_ring),
       loads_(system.has_power(false)),
       dampers_(system.has_power(true)),
       drives_(system.rheonomic()) {
@@ -104,9 +97,7 @@ double EnergyMeter::damping_power(const State& state, const VectorXd& accelerati
 // A rate that is gone long before the step's end, with most of the power, or that has come about right behind
 // its start, is not to be had from the ends, nor one that a method lets ring about what it is: it lost what
 // the energies lost beyond the work of others, as in an impact, `lost`. What that is less than nothing, or
-// more than these powers could take, is an error of the method, which the balance is to tell. Where a method
-// lets them ring for long, that is energy that a damper has taken long since: it is booked when the ringing
-// begins, and what is left of it in a state is what the balance is off.
+// more than these powers could take, is an error of the method, which the balance is to tell.
 //
 // Where the motion between the states has the same power, `between`, that is taken: what its interpolant is
 // off where two motions are nearly one has a power of its own. All powers are those of what stiff dampers
@@ -124,11 +115,8 @@ double EnergyMeter::taken_by_stiff(const State& a, const State& b, double fastes
                at_end = damping_power(b, after_.acceleration, 0);
   const bool gone = gone_ && (at_start > most * at_end || at_end > most * at_start);
   if (gone || rings_) {
-    double most_lost =
-        std::max({most_power_, at_start - ringing_.power_a, at_end - ringing_.power_b, 0.0}) * h;
-    const double by_ringing = ringing_.at_a - ringing_.at_b;
-    if (!lets_ring_ || !rings_) most_lost = std::max(most_lost, between);
-    return by_ringing + std::clamp(lost - by_ringing, 0.0, most_lost);
+    const double most_lost = std::max({h * most_power_, h * at_start, h * at_end, between, 0.0});
+    return std::clamp(lost, 0.0, most_lost);
   }
   const double line = 0.5 * h * (at_start + at_end);
   double bend = h * h / 12 * (rate(a, before_.acceleration, e) - rate(b, after_.acceleration, -e));
@@ -175,19 +163,11 @@ std::vector<Index> parts_of(const System& system, const SparseRows* dampers = nu
 // At either end of a step, in the mean, and of what that is off the mean of the ends: squares.
 struct Rates {
   double at_a = 0, at_b = 0, mean = 0, off = 0;
-  // Of the change within the step its power, its square by masses, its power with what the three others are.
-  double change = 0, inertia = 0, with_a = 0, with_b = 0, with_mean = 0;
   // They are others behind the start, or before the end, than there: of the time between the mean alone
   // tells. A rate that falls as exp(-c t / m) has less than a sixth of the step for it.
   bool gone() const { return 9 * off > std::max({at_a, at_b, mean}); }
   // They change their sign from state to state.
   bool ring() const { return 2 * mean < std::min(at_a, at_b); }
-  // What changes then is what rings: of rates whose power with it is this, the power and kinetic energy of
-  // what they have of it.
-  double ringing(double with) const { return change > 0 ? with * with / change : 0.0; }
-  double most_ringing() const { return std::max(ringing(with_a), ringing(with_b)); }
-  bool rings_beside() const { return 2 * ringing(with_mean) < most_ringing(); }  // what they do else
-  double energy(double with) const { return change > 0 ? 0.5 * ringing(with) * inertia / change : 0.0; }
 };
 // Of a part: its rates. Of what dampers join besides: those that they tell from what it does as a whole, by
 // the powers that they would take of them.
@@ -197,15 +177,6 @@ struct PartRates {
 };
 
 }  // namespace
-
-// What rates change by within the step beyond what they do as mean ones, from the last step to this.
-VectorXd EnergyMeter::fast_change(const State& a, const State& b, const VectorXd& mean) {
-  VectorXd change = b.w - a.w;
-  const double h = b.t - a.t;
-  if (fresh_mean_ && mean_until_ == a.t) change -= 2 * h / (h + mean_over_) * (mean - last_mean_);
-  last_mean_ = mean, mean_until_ = b.t, mean_over_ = h, fresh_mean_ = true;
-  return change;
-}
 
 // Where a stiff damper moves coordinates, accelerations are what rounding and the method leave of rates times
 // c / m, there and in what hangs together with them. The rest tells their motion to order 4: the quintic is
@@ -221,7 +192,6 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   std::vector<PartRates> rates(parts_.size());
   gone_ = rings_ = false;
   most_power_ = 0;
-  ringing_ = {};
   stiff_.setZero(a.w.size());
   const auto of = [&](const std::vector<Index>& parts, Index i) -> PartRates& {
     return rates[static_cast<std::size_t>(parts[static_cast<std::size_t>(i)])];
@@ -230,23 +200,15 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   const auto power = [&](const VectorXd& w) { return VectorXd(-w.cwiseProduct(by_w * w)); };
   const VectorXd bounds = rate_bounds(by_w, system_.mass()), mean = (b.z - a.z) / h;
   const VectorXd of_a = power(a.w), of_b = power(b.w), of_mean = power(mean),
-                 of_off = power(mean - 0.5 * (a.w + b.w)), change = fast_change(a, b, mean),
-                 push = -(by_w * change), inertia = change.cwiseProduct(system_.mass() * change);
+                 of_off = power(mean - 0.5 * (a.w + b.w));
   constexpr double of_energy = 1e-9;
   const double rounding = of_energy * std::max(system_.kinetic_energy(a.w), system_.kinetic_energy(b.w));
-  const auto rings = [&](const Rates& damped) {
-    if (!lets_ring_) return damped.ring() && h * std::min(damped.at_a, damped.at_b) > rounding;
-    return damped.rings_beside() && h * damped.most_ringing() > rounding;
-  };
   for (Index i = 0; i < mean.size(); ++i) {
     PartRates& part = of(parts_, i);
     Rates& damped = of(damped_, i).damped;
     part.stiff |= h * bounds[i] > stiff_at;
     if (h * bounds[i] > stiff_at) stiff_[damped_[static_cast<std::size_t>(i)]] = 1;
     damped.at_a += of_a[i], damped.at_b += of_b[i], damped.mean += of_mean[i], damped.off += of_off[i];
-    damped.change += push[i] * change[i], damped.inertia += inertia[i];
-    damped.with_a += push[i] * a.w[i], damped.with_b += push[i] * b.w[i],
-        damped.with_mean += push[i] * mean[i];
     part.all.at_a += square(a.w[i]), part.all.at_b += square(b.w[i]), part.all.mean += square(mean[i]);
     part.all.off += square(mean[i] - 0.5 * (a.w[i] + b.w[i]));
   }
@@ -255,7 +217,7 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
     if (!part.stiff) continue;
     const Rates& damped = of(damped_, i).damped;
     gone_ = gone_ || part.all.gone() || (damped.gone() && h * damped.off > rounding);
-    rings_ = rings_ || rings(damped);
+    rings_ = rings_ || (damped.ring() && h * std::min(damped.at_a, damped.at_b) > rounding);
     if (part.all.gone()) ends.a.w[i] = ends.b.w[i] = mean[i];
     const double at_a = ends.a.w[i], at_b = ends.b.w[i];
     ends.by_a[i] = (6 * mean[i] - 4 * at_a - 2 * at_b) / h;
@@ -263,14 +225,8 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   }
   for (Index i = 0; i < mean.size(); ++i) {
     const Rates& damped = rates[static_cast<std::size_t>(i)].damped;  // of those that it stands for
+    most_power_ += std::max({damped.at_a, damped.at_b, damped.mean, damped.off});
     stiff_[i] = stiff_[damped_[static_cast<std::size_t>(i)]];
-    if (lets_ring_ && stiff_[i] > 0 && rings(damped)) {
-      most_power_ += std::max(damped.mean - damped.ringing(damped.with_mean), 0.0);
-      ringing_.power_a += damped.at_a, ringing_.power_b += damped.at_b;
-      ringing_.at_a += damped.energy(damped.with_a), ringing_.at_b += damped.energy(damped.with_b);
-    } else {
-      most_power_ += std::max({damped.at_a, damped.at_b, damped.mean, damped.off});
-    }
   }
   return ends;
 }
@@ -330,9 +286,7 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
     dissipated += of_others + taken_by_stiff(a, b, fastest, by_stiff, lost);
   } else {
     dissipated += taken_between;
-    ringing_ = {};
   }
-  dissipated += ringing_.at_b - std::exchange(booked_, ringing_.at_b);
 }
 
 namespace {
@@ -348,18 +302,16 @@ double other_loads(const System& from, const System& to, const VectorXd& z) {
 
 }  // namespace
 
-RunEnergyFlow::RunEnergyFlow(const Trajectory& run, bool booked, bool lets_ring)
+RunEnergyFlow::RunEnergyFlow(const Trajectory& run, bool booked)
     : trajectory_(run),
       booked_(booked),
-      lets_ring_(lets_ring),
       drives_(drive_channels(run.model())),
       flow_{{0.0}, {0.0}, {0.0}, {0.0}, std::vector(drives_.size(), std::vector{0.0})} {}
 
 void RunEnergyFlow::meter_of(const Model& model) {
   if (model_ == &model) return;
-  if (meter_) flow_.dissipated.back() -= meter_->jump();
   model_ = &model;
-  meter_ = std::make_unique<EnergyMeter>(model.system, lets_ring_);
+  meter_ = std::make_unique<EnergyMeter>(model.system);
   meter_->at_point = [this](double weight, double t, const VectorXd& q, const VectorXd& v,
                             const VectorXd& lambda) {
     for (std::size_t d = 0; d < drives_.size(); ++d)
@@ -448,7 +400,7 @@ void RunEnergyFlow::step_to(std::size_t i, StateForces* forces) {
         flow_.impact_loss.back() -= gain;
     }
     flow_.load_work.back() -= other_loads(before, model.system, b.z);
-    if (meter_) flow_.dissipated.back() -= meter_->jump();
+    if (meter_) meter_->jump();
     return;
   }
   meter_of(model);

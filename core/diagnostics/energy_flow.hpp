@@ -5,7 +5,6 @@
 
 #include <functional>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "core/diagnostics/drives.hpp"
@@ -25,8 +24,6 @@ struct EnergyFlow {
 // Whether something besides loads gives work by a law of its own: motors, winches, elastic rods that warm.
 bool motors_or_warmed(const Structure& structure);
 
-bool lets_ring(const SolverOptions& options);  // the method does (Claims)
-
 // What dry friction takes is exact: a force times the way. Powers are integrated over each step with three
 // Gauss points (order 6) on the quintic that has the coordinates, rates and accelerations of the states at
 // both ends: an independent quadrature, whatever the method, of order 6 where the forces are smooth within
@@ -40,18 +37,12 @@ bool lets_ring(const SolverOptions& options);  // the method does (Claims)
 // through coordinates and rates: order 4.
 class EnergyMeter {
  public:
-  explicit EnergyMeter(const System& system, bool lets_ring = false);
+  explicit EnergyMeter(const System& system);
   // Nothing goes in or out but by potentials and constant loads: no step needs to be added.
   bool idle() const { return !loads_ && !dampers_ && !drives_; }
   // The step from a to b, which follows on the last one; `at_b` where that is known of b already.
   void add(const State& a, const State& b, SolvedPoint at_b = {});
-  // Velocities have changed within no time, or another meter goes on: what was booked ahead of what rings is
-  // let go [J].
-  double jump() {
-    fresh_ = fresh_mean_ = false;
-    dissipated -= booked_;
-    return std::exchange(booked_, 0.0);
-  }
+  void jump() { fresh_ = false; }                        // velocities have changed within no time
   double load_work = 0, dissipated = 0, drive_work = 0;  // so far [J]
   // Told every point of the quadrature: its weight [s], the time, node coordinates, velocities, multipliers.
   std::function<void(double, double, const VectorXd&, const VectorXd&, const VectorXd&)> at_point = {};
@@ -69,21 +60,12 @@ class EnergyMeter {
     VectorXd by_a = {}, by_b = {};
   };
   Ends trusted_ends(const State& a, const State& b);
-  VectorXd fast_change(const State& a, const State& b, const VectorXd& mean);
-  VectorXd last_mean_;  // rates of the step that has ended at mean_until_, of size mean_over_
-  double mean_until_ = 0, mean_over_ = 0;
-  bool fresh_mean_ = false;
   bool gone_ = false, rings_ = false;  // in the last step of these, the rates of something
-  double most_power_ = 0;              // of dampers there, but of those whose rates ring [W]
-  struct Ringing {                     // at its ends: power [W], energy [J]
-    double power_a = 0, power_b = 0, at_a = 0, at_b = 0;
-  };
-  Ringing ringing_;
-  double booked_ = 0;  // as taken, of what rings in the last state [J]
+  double most_power_ = 0;              // of dampers there [W]
   double taken_by_stiff(const State& a, const State& b, double fastest, double between, double lost);
 
   System system_;  // follows the states
-  bool lets_ring_, loads_, dampers_, drives_;
+  bool loads_, dampers_, drives_;
   std::unique_ptr<Index1> index1_;
   SolvedPoint before_, after_;
   bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since
@@ -98,7 +80,7 @@ class EnergyMeter {
 // The same along the states of a run, each in its turn; zeros unless it is `booked`.
 class RunEnergyFlow {
  public:
-  RunEnergyFlow(const Trajectory& run, bool booked, bool lets_ring);
+  RunEnergyFlow(const Trajectory& run, bool booked);
   // The step that ends in state i > 0; `forces` of the run, where they are asked for anyway: one
   // factorisation a state serves both.
   void step_to(std::size_t i, StateForces* forces);
@@ -109,7 +91,7 @@ class RunEnergyFlow {
   bool explain_impulse(const Model& rows, const State& a, const State& b, double gain);
 
   const Trajectory& trajectory_;
-  bool booked_, lets_ring_;
+  bool booked_;
   std::vector<DriveChannel> drives_;
   EnergyFlow flow_;
   std::unique_ptr<EnergyMeter> meter_;

@@ -301,8 +301,7 @@ void GeneralizedAlpha::iterate(const State& state, double h, StepReport& report)
 }  // namespace
 
 Claims generalized_alpha_claims(const SolverOptions& options) {
-  return {
-      .order = 2, .implicit = true, .holds_positions = true, .damps = options.rho_inf < 1, .lets_ring = true};
+  return {.order = 2, .implicit = true, .holds_positions = true, .damps = options.rho_inf < 1};
 }
 
 std::unique_ptr<Integrator> make_generalized_alpha(const System& system, const SolverOptions& options) {

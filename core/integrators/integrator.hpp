@@ -41,8 +41,6 @@ struct Claims {
   bool holds_velocities = false;         // |G v| at round-off after every step
   bool conserves_momentum_maps = false;  // (angular) momenta of a symmetric motion, to round-off
   bool damps = false;                    // takes the energy of what a step does not resolve, and means to
-  bool lets_ring =
-      false;  // rates that a damper takes within a step change their sign in every step, for long
 };
 
 struct Method {

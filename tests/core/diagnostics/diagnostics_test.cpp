@@ -165,7 +165,7 @@ TEST_CASE("what is found of a run ahead, while it grows, changes no bit of its d
   std::vector<SolvedPoint> forces;
   Trajectory seen(shared(run.trajectory.model()));
   StateForces solver(seen);
-  RunEnergyFlow flow(seen, true, false);
+  RunEnergyFlow flow(seen, true);
   for (std::size_t at = 0; at < run.trajectory.size(); at += 28) {
     for (std::size_t i = at; i < std::min(at + 28, run.trajectory.size()); ++i) {
       if (&run.trajectory.model(i) != &seen.last_model()) seen.change_model(shared(run.trajectory.model(i)));
