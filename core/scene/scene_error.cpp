@@ -11,8 +11,7 @@ std::string problem_text(const SceneProblem& problem) {
   const bool option = text == override_source || text == varied_source;
   if (where.line > 0)
     text.append(":").append(std::to_string(where.line)).append(":").append(std::to_string(where.column));
-  if (!problem.key.empty())
-    text.append(text.empty() ? "" : option ? " " : ": ").append(problem.key);
+  if (!problem.key.empty()) text.append(text.empty() ? "" : option ? " " : ": ").append(problem.key);
   return text.append(text.empty() ? "" : ": ").append(problem.message);
 }
 
