@@ -285,7 +285,8 @@ rods = [{nodes = ["A", "B"], density = 2700, area = 1e-4, segments = )") +
   const std::string aside =
       "kind = 'relation'\nnodes = ['A', 'B', 'Q']\ncoefficients = [0.5, 0, 0, 0.5, 0, 0, -1, 0, 0]\n";
   CHECK(testing::error_of(beam(aside, "4")).empty());
-  for (const std::string& note : testing::model_of(beam(aside, "1"))->structure.notes)
+  const auto beside = testing::model_of(beam(aside, "1"));
+  for (const std::string& note : beside->structure.notes)
     CHECK(note.find("pins between the ends") == std::string::npos);
   // Beyond the end of a rod, in line with it, nothing is held between.
   CHECK(testing::error_of(beam("kind = 'collinear'\nnodes = ['A', 'P', 'B']\n", "1")).empty());
