@@ -22,6 +22,7 @@ constexpr double loose_steps = 1e-9;   // of motions that only tell whether they
 // creeps then has stalled.
 constexpr double patience = 1e9;
 constexpr double unbounded_torque = std::numeric_limits<double>::infinity();
+constexpr int most_doublings = 200;  // of a first guess, beyond which nothing is said to stall it
 
 class StuckMaker {
  public:
@@ -275,12 +276,14 @@ class StuckMaker {
     motion_.law().looseness = loose_steps;
     double low = 0, high = std::max(first_guess(some), std::numeric_limits<double>::min());
     double stalls_at = 0;
-    for (int it = 0; it < 60 && arrives(high); ++it) {
+    int doublings = 0;
+    for (; doublings < most_doublings && arrives(high); ++doublings) {
       low = high;
       high *= 2;
     }
     stalls_at = motion_.way();
-    while (high - low > torque_found * high) {
+    if (doublings == most_doublings) high = low = unbounded_torque;
+    while (low < unbounded_torque && high - low > torque_found * high) {
       const double middle = 0.5 * (low + high);
       if (arrives(middle)) {
         low = middle;
@@ -294,11 +297,14 @@ class StuckMaker {
     at(std::max(0.0, stalls_at));
   }
 
-  // Some torque of the size of what acts.
+  // Some torque of the size of what acts, or of what stops the energy of the motion on all its way.
   double first_guess(const Some& some) const {
     double most = 0;
     for (std::size_t j = 0; j < rest_.size(); ++j)
       if (const double rate = rate_in(some, j); rate > 0) most = std::max(most, std::abs(rest_[j]));
+    for (const MarginReach& reach : margin_.motion)
+      if (const double way = std::abs(margin_.motion.back().s); way > 0)
+        most = std::max(most, reach.kinetic / way);
     double fastest = 0;
     for (std::size_t j = 0; j < rest_.size(); ++j) fastest = std::max(fastest, rate_in(some, j));
     return most / fastest;

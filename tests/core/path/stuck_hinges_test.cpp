@@ -110,6 +110,39 @@ end_time = 60
   }
 }
 
+// No force but a damper's: a rod of I = 1 kg m^2 that turns at 3 rad/s, c = 0.5 N m s, has gone 6 (1 -
+// e^-0.5) rad in a second, and with T in its hinge comes to rest at w / c - T / c^2 ln(1 + c w / T).
+TEST_CASE("a jam stops what moves by its start alone") {
+  const Scene scene = read_scene_text(R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "G", position = [0, -1, 0], fixed = true},
+  {name = "B", position = [1, 0, 0], velocity = [0, 3, 0]}]
+rods = [{nodes = ["A", "G"], mass = 0}, {nodes = ["A", "B"], mass = 3}]
+[[constraints]]
+kind = "plane"
+nodes = ["B"]
+normal = [0, 0, 1]
+[[forces]]
+kind = "joint_damping"
+nodes = ["A"]
+damping = 0.5
+[solver]
+stages = 4
+step = 0.01
+end_time = 1
+)",
+                                      "own");
+  double low = 1e-3, high = 10;
+  while (high - low > 1e-12) {
+    const double T = 0.5 * (low + high);
+    (3 / 0.5 - T / 0.25 * std::log1p(0.5 * 3 / T) > 6 * (1 - std::exp(-0.5)) ? low : high) = T;
+  }
+  const auto hinges = stuck_in(scene);
+  REQUIRE(hinges.size() == 1);
+  // It is found to 1e-7, by motions of 1e-9, on a way known to 1e-9.
+  CHECK(hinges.front().stall_torque == Approx(low).epsilon(1e-6));
+}
+
 TEST_CASE("what holds a hinge at rest is the rest force of a pose, not of a part of the way") {
   const auto hinges = stuck_in(read_scene_text(four_bar(node_a, node_b, R"([[forces]]
 kind = "torsion_spring"
