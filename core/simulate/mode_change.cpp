@@ -24,6 +24,8 @@ constexpr double all_stopped = 1e-13;
 // Of an acceleration, of all that it is the sum of; of one that no push changes, of what cancels where it
 // does not: it is told by no more than PushResponses::movable() tells.
 constexpr double sum_rounding = 1e-12, immovable_rounding = 1e-6;
+// Of what friction could do to an acceleration: squares of rates of rounding, unlike in rows of one freedom.
+constexpr double no_load = 1e-30;
 // Of the forces: where one falls to zero is located to a share of that (one_sided.cpp), either way.
 constexpr double located = 1e-9;
 
@@ -251,6 +253,7 @@ class Change {
     std::vector<Index> leaving;  // what sticks and cannot any more, and what stands by it
     for (Index r = 0; r < count(); ++r) {
       const std::size_t i = side(r), k = static_cast<std::size_t>(r);
+      if (sides_.is_friction(i) && std::abs(b_[r]) <= no_load * D_(r, r) * sides_.holding(i)) b_[r] = 0;
       if (passes_[k]) {
         slide(r,
               std::abs(b_[r]) > rounds_[r] || sides_.slip(i) == 0 ? (b_[r] > 0 ? 1 : -1) : -sides_.slip(i));

@@ -308,7 +308,7 @@ def build(mutants):
     launcher = re.findall(r"^UNFURL_CCACHE:\w+=(.*)$", open(os.path.join(RELEASE, "CMakeCache.txt")).read(), re.M)
     done = run(["cmake", "-S", tree, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DUNFURL_TESTS=OFF",
                 "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -D_GLIBCXX_ASSERTIONS", f"-DUNFURL_CCACHE={launcher[0]}",
-                f"-DCMAKE_CXX_FLAGS=-w -include {ROOT}/tests/mutation/switch.hpp"])
+                f"-DCMAKE_CXX_FLAGS=-Werror=return-local-addr -include {ROOT}/tests/mutation/switch.hpp"])
     if done.returncode:
         sys.exit(done.stdout + done.stderr)
     done = run(["cmake", "--build", folder, "--target", "unfurl_core", "--", "-k", "0"])
@@ -319,11 +319,11 @@ def build(mutants):
             if done.returncode:
                 sys.exit(done.stderr)
         return set()
-    bad = set()
-    for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", done.stdout):
+    bad, errors = set(), "\n".join(line for line in done.stdout.splitlines() if "warning:" not in line)
+    for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", errors):
         bad |= {k for k, m in mutants.items() if m[0] == path and m[1] == int(line) - 1}
     if not bad:  # the end of a statement is named, and the error stands where it begins
-        for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", done.stdout):
+        for path, line in re.findall(r"(core/[\w/]+\.cpp):(\d+)", errors):
             before = [(m[1], k) for k, m in mutants.items() if m[0] == path and m[1] < int(line)]
             bad |= {max(before)[1]} if before else set()
     if not bad:

@@ -7,6 +7,7 @@
 
 #include "core/simulate/friction_hold.hpp"
 #include "core/simulate/stepper.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -15,7 +16,7 @@ namespace friction_hold_test {
 
 namespace {
 
-using testing::end_positions, testing::run_scene;
+using testing::end_positions, testing::number, testing::run_scene;
 
 // By duality, the least sum tau_j |a_j . u| / |l . u| of all u; it is reached where u is normal to as many
 // generators a_j as leave one direction.
@@ -172,6 +173,31 @@ TEST_CASE("frictions of a loop stick, slip and turn round as every method says")
     // rk4 with turns of some 10 rad/s in steps of 0.5 ms: 0.005^4 a radian, over some.
     CHECK((end_positions(run) - end_positions(by_rk4)).lpNorm<Eigen::Infinity>() <= 1e-7);
     CHECK(testing::largest(diagnose(run), "energy_balance_J") <= 1e-7);
+  }
+}
+
+// Nothing acts but friction, in every hinge: the accelerations at rest are squares of what rounding leaves of
+// the rates, unlike in each hinge of the one freedom, and no force is needed to hold it.
+TEST_CASE("linkages that nothing drives come to rest by the friction of their hinges and stay there") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int k = 0; k < 30; ++k) {
+    Chain linkage = k % 3 < 2 ? four_bar : five_bar;
+    for (double* x : {&linkage.nodes[1][0], &linkage.nodes[1][1], &linkage.nodes[2][0], &linkage.nodes[2][1]})
+      *x += 0.2 * uniform(random);
+    for (double& tau : linkage.kinetic) tau = 0.2 + uniform(random);
+    linkage.holding = linkage.kinetic;
+    for (Eigen::Vector2d& load : linkage.load) load.setZero();
+    const double vx = 0.3 + uniform(random), vz = uniform(random);
+    const Simulation run = run_scene(
+        linkage.scene(k % 2 == 0),
+        {"structure.nodes.n1.velocity=[" + number(vx) + ", 0, " + number(vz) + "]", "solver.step=0.01"});
+    INFO(k << ": " << run.message);
+    REQUIRE(run.status == RunStatus::completed);
+    const Diagnostics d = diagnose(run);
+    CHECK(d.at("kinetic_energy_J").values.front() > 1e-4);
+    CHECK(d.at("kinetic_energy_J").values.back() == 0);
+    CHECK(d.axial_force.row(d.axial_force.rows() - 1).lpNorm<Eigen::Infinity>() == 0);
   }
 }
 
