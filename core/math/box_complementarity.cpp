@@ -12,6 +12,7 @@ namespace {
 
 constexpr double box_dependent = 1e-9;  // of a unit diagonal
 constexpr double box_zero = 1e-12;      // of the largest b of a row with a choice, in the unit diagonal
+constexpr double sum_zero = 1e-15;      // of what is summed in a row: pushes may be far larger than b
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 std::vector<Index> rows_of(const std::vector<bool>& held) {
@@ -47,6 +48,7 @@ class BoxProblem {
         low_(low),
         high_(high),
         x_(VectorXd::Zero(b.size()).cwiseMax(low).cwiseMin(high)),
+        bounded_((high - low).array().isFinite().cast<double>()),
         held_(static_cast<std::size_t>(b.size()), false) {
     const VectorXd w = b + D * x_;
     for (Index i = 0; i < w.size(); ++i)
@@ -65,10 +67,12 @@ class BoxProblem {
   BoxSolution solution() const { return {x_, D_ * x_ + b_, held_}; }
 
  private:
-  // Which way row i must go: 1, -1, or 0 where it is right.
+  // Which way row i must go: 1, -1, or 0 where it is right, to what rounding leaves of bounded pushes.
   int way(Index i, double w) const {
-    if (w < -zero_ && x_[i] < high_[i]) return 1;
-    if (w > zero_ && x_[i] > low_[i]) return -1;
+    const double zero =
+        std::max(zero_, sum_zero * D_.row(i).cwiseAbs().dot(bounded_.cwiseProduct(x_.cwiseAbs())));
+    if (w < -zero && x_[i] < high_[i]) return 1;
+    if (w > zero && x_[i] > low_[i]) return -1;
     return 0;
   }
   std::optional<Index> wrong() const {
@@ -109,7 +113,7 @@ class BoxProblem {
 
   const MatrixXd& D_;
   const VectorXd &b_, &low_, &high_;
-  VectorXd x_;
+  VectorXd x_, bounded_;  // 1 where both bounds are finite, else 0
   std::vector<bool> held_;
   double zero_ = 0;  // by rows that have a choice: others may be measured where they hardly move
 };

@@ -121,6 +121,27 @@ TEST_CASE("a push that is given and hardly moves anything decides nothing about 
   CHECK(found->held[0]);
 }
 
+// Frictions of one freedom, whose rows are known to rounding: what acts is next to nothing beside their
+// bounds, and not quite the same by each. Each of them is right to that and to rounding of the bounds.
+TEST_CASE("rows of one freedom that contradict each other far below their bounds have an answer") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const double size : {1.0, 1e-8, 1e-14, 1e-20, 1e-60})
+    for (int k = 0; k < 300; ++k) {
+      const Index n = 2 + k % 4;
+      const VectorXd row = VectorXd::NullaryExpr(n, [&] { return uniform(random); }),
+                     bound = VectorXd::NullaryExpr(n, [&] { return 0.1 + std::abs(uniform(random)); });
+      MatrixXd D = row * row.transpose();
+      for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j < i; ++j) D(i, j) = D(j, i) *= 1 + 2e-16 * uniform(random);
+      const VectorXd b = VectorXd::NullaryExpr(n, [&] { return size * uniform(random); });
+      const auto found = solve_box(D, b, -bound, bound);
+      INFO(size << ", " << k);
+      REQUIRE(found.has_value());
+      CHECK(fulfils({D, b, -bound, bound}, found->x, 1e-13));
+    }
+}
+
 // One body between two walls meets the one as fast as it leaves the other; its rates are of a motion that is
 // 1e4 times as fast.
 TEST_CASE("walls on either side of what hardly moves agree to the rounding of its rates") {
