@@ -354,14 +354,8 @@ void add_run(py::module_& module) {
       .def_property_readonly("status",
                              [](const Run& run) { return std::string(to_string(run.simulation().status)); })
       .def_property_readonly("message", [](const Run& run) { return run.simulation().message; })
-      .def_property_readonly(
-          "warnings",
-          [](const Run& run) {
-            std::vector<std::string> all = run.simulation().warnings;
-            for (const auto& warning : accuracy_warnings(run.simulation(), run.diagnostics()))
-              all.push_back(warning);
-            return all;
-          })
+      .def_property_readonly("warnings",
+                             [](const Run& run) { return warnings_of(run.simulation(), run.diagnostics()); })
       .def_property_readonly("title", [](const Run& run) { return run.scene().title; })
       .def("at", &Run::at, py::arg("t"))
       .def("measure", &Run::measure)

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -102,9 +103,12 @@ Sweep swept(const SweepPlan& plan, const fs::path& folder, const StudyHooks& hoo
   const fs::path path = journal_in(folder, plan);
   Sweep sweep;
   try {
-    Journal journal(path, plan.columns(), plan.axes.size(), plan.number_columns());
+    Journal journal(path, plan.columns(), plan.axes.size(), plan.number_columns(),
+                    [&](const auto& row) { return plan.is_finished(row); });
     journal.require_asked(plan.asked(), folder, "ask for them, too, or use another folder");
     sweep = run_sweep(plan, journal, hooks);
+    for (std::string& text : journal.damage())
+      sweep.conflicts.push_back(std::move(text) + " and is computed anew");
   } catch (const JournalMismatch& error) {
     throw FileError(folder, std::string(error.what()) + "; other keys or measures than now?");
   }
@@ -122,6 +126,12 @@ SceneSource as_now(const SceneSource& given) {
   SceneSource source = given;
   source.files = std::make_shared<FilesBeside>();
   return source;
+}
+
+// Throws where warnings are errors.
+void warn(const std::vector<std::string>& texts) {
+  for (const std::string& text : texts)
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
 }  // namespace
@@ -157,6 +167,9 @@ py::dict sweep_scene(const SceneSource& given,
     sweep = swept(plan, folder, hooks);
   }
   asker.raise();
+  if (!sweep.moved.empty()) sweep.conflicts.push_back(sweep.moved);
+  for (const auto& texts : {sweep.conflicts, sweep.warnings}) warn(texts);
+  for (const auto& [outcome, text] : sweep.why) warn({outcome + ": " + text});
   return columns_of_table(sweep.table, {plan.axes.size()});
 }
 
@@ -187,6 +200,7 @@ double solve_scene(const SceneSource& given, const std::string& key, const std::
   hooks.cancelled = [&asker] { return asker(); };
   StudyHooks asking;
   asking.cancelled = hooks.cancelled;
+  std::map<double, std::vector<std::string>> warned;
   const Objective objective = [&](double x) {
     try {
       const Scene changed = source.read({key + "=" + exact_number(x)});
@@ -194,6 +208,7 @@ double solve_scene(const SceneSource& given, const std::string& key, const std::
           simulate_as_asked(build_model(changed), study_solver(changed, {key}, {measure}), hooks);
       if (may_have_no_bound(measure.name)) record_singular_poses(run);
       const Diagnostics diagnostics = judge(run);
+      warned[x] = warnings_of(run, diagnostics);
       return run.status == RunStatus::failed ? NAN : measure.value(run, diagnostics);
     } catch (const SceneError&) {
       return static_cast<double>(NAN);
@@ -207,6 +222,7 @@ double solve_scene(const SceneSource& given, const std::string& key, const std::
     asker.raise();
     throw;
   }
+  warn(warned[found]);
   return found;
 }
 

@@ -125,17 +125,19 @@ int cmd_solve(const Arguments& arguments) {
   SimulationHooks hooks;
   hooks.cancelled = interrupted;
   const std::string flag = uniqueness_of(target.measure.name);
-  std::map<double, bool> unique;        // by the parameter
-  std::map<double, std::string> moved;  // nodes to fit lengths of rods: what is said of it
+  std::map<double, bool> unique;  // by the parameter
+  std::map<double, std::vector<std::string>> warned;
   const Objective objective = [&](double x) {
     try {
       const Scene changed = source.read({study.find + "=" + exact_number(x)});
       const auto model = build_model(changed);
-      moved[x] = note_of_moved_nodes(model->structure);
       Simulation run = simulate_as_asked(model, study_solver(changed, {study.find}, {target.measure}), hooks);
       if (may_have_no_bound(target.measure.name)) record_singular_poses(run);
       const Diagnostics diagnostics = judge(run);
       if (run.status == RunStatus::failed) return std::numeric_limits<double>::quiet_NaN();
+      warned[x] = warnings_of(run, diagnostics);
+      if (std::string note = note_of_moved_nodes(model->structure); !note.empty())
+        warned[x].push_back(std::move(note));
       if (!flag.empty()) unique[x] = find_measure(flag).value(run, diagnostics) != 0.0;
       return target.measure.value(run, diagnostics);
     } catch (const SceneError&) {
@@ -146,8 +148,7 @@ int cmd_solve(const Arguments& arguments) {
   asking.cancelled = interrupted;
   try {
     const Solved solved = solve_for(objective, target.value, options, asking);
-    if (const std::string& said = moved[solved.x]; !said.empty())
-      std::cerr << "unfurl: warning: " << said << "\n";
+    for (const std::string& text : warned[solved.x]) std::cerr << "unfurl: warning: " << text << "\n";
     if (!output.path().empty()) write_results(output.path(), study.find, source, target, solved);
     std::optional<bool> solved_force;
     if (const auto at = unique.find(solved.x); at != unique.end()) solved_force = at->second;

@@ -71,7 +71,11 @@ int study_models(const Arguments& arguments) {
   report.add(models_summary(models));
   const std::string text = report_markdown(report);
   session.write("models.md", text);
-  return finish(true, arguments, markdown_text(models_summary(models)));
+  for (const MeasuredModel& model : models)
+    if (model.outcome == "failed")
+      std::cerr << "unfurl: warning: " << model.choice.name << ": failed: " << model.message << "\n";
+  const int code = finish(true, arguments, markdown_text(models_summary(models)));
+  return models.front().outcome == "failed" ? exit_solver_failed : code;  // all others are compared with it
 }
 
 }  // namespace

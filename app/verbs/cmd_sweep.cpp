@@ -284,6 +284,7 @@ int cmd_sweep(const Arguments& arguments) {
   const Sweep& sweep = *computed;
   for (const std::string& conflict : sweep.conflicts) std::cerr << "unfurl: warning: " << conflict << "\n";
   if (!sweep.moved.empty()) std::cerr << "unfurl: warning: " << sweep.moved << "\n";
+  for (const std::string& warning : sweep.warnings) std::cerr << "unfurl: warning: " << warning << "\n";
   warn_of_unanswered(plan, sweep, scene.solver.model, arguments);
   session.write(journal_name(plan.shard), csv_text(sweep.table));
   const std::size_t bad = unanswered(plan, sweep);

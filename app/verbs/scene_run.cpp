@@ -155,8 +155,8 @@ void write_exports(const std::vector<const ExportFormat*>& formats, const std::f
 }
 
 void warn_of_run(const Simulation& run, const Diagnostics& diagnostics) {
-  for (const auto& warnings : {run.warnings, accuracy_warnings(run, diagnostics)})
-    for (const auto& warning : warnings) std::cerr << "unfurl: warning: " << warning << "\n";
+  for (const auto& warning : warnings_of(run, diagnostics))
+    std::cerr << "unfurl: warning: " << warning << "\n";
   if (run.status == RunStatus::failed) std::cerr << "unfurl: the solver failed: " << run.message << "\n";
 }
 

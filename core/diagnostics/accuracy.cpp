@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 
 #include "core/diagnostics/books.hpp"
@@ -268,6 +269,12 @@ std::string words_of_interruption(const Diagnostics& d) {
 
 std::string mistrust(const Simulation& run, const Diagnostics& d) {
   return good_part(run, d).text(d);
+}
+
+std::vector<std::string> warnings_of(const Simulation& run, const Diagnostics& d) {
+  std::vector<std::string> all = run.warnings;
+  if (!d.t.empty()) std::ranges::move(accuracy_warnings(run, d), std::back_inserter(all));
+  return all;
 }
 
 std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnostics& d) {

@@ -41,6 +41,9 @@ std::string mistrust(const Simulation& run, const Diagnostics& diagnostics);
 // to be trusted blindly. Each text names the size and the cure; empty where nothing is wrong.
 std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnostics& diagnostics);
 
+// What was said while it ran, and that. Without diagnostics (of no state) the former alone.
+std::vector<std::string> warnings_of(const Simulation& run, const Diagnostics& diagnostics);
+
 // The constraint error relative to rod length up to which a step's Newton iteration goes on: some units of
 // the round-off of coordinates, which are as large as the structure; 0 for methods without one. Taken at the
 // end of the run, for the shortest rod or other length.

@@ -150,8 +150,7 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   if (!record.scene_hash.empty()) summary["scene_hash"] = record.scene_hash;
   if (record.wall_s > 0) summary["wall_s"] = record.wall_s;
   summary["message"] = run.message;
-  summary["warnings"] = run.warnings;
-  for (const auto& warning : accuracy_warnings(run, diagnostics)) summary["warnings"].push_back(warning);
+  summary["warnings"] = warnings_of(run, diagnostics);
   summary["notes"] = Json::array();
   if (const std::string note = ending_note(run, diagnostics); !note.empty()) summary["notes"].push_back(note);
   summary["model"] = model_json(model.structure, model.system, mobility);

@@ -192,6 +192,8 @@ Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hoo
   out.cpu_max = times.back();
   judge(*first);
   out.outcome = to_string(first->status);
+  out.message = first->message;
+  if (first->status == RunStatus::failed) return std::move(*first);
   out.deployment_time = deployment_time(*first);
   const double begin = thread_cpu_seconds();
   const Diagnostics found = diagnose(*first, hooks.cancelled);
@@ -268,8 +270,8 @@ std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats
       Simulation run = measure(source, repeats, hooks, m);
       if (!base) {
         base = std::move(run);
-        m.difference = m.tip_difference = 0;
-      } else {
+        if (base->status != RunStatus::failed) m.difference = m.tip_difference = 0;
+      } else if (base->status != RunStatus::failed && run.status != RunStatus::failed) {
         m.difference = difference(base->trajectory, run.trajectory, base->options);
         m.tip_difference = tip_difference(base->trajectory, run.trajectory);
       }
@@ -283,7 +285,7 @@ std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats
     }
     out.push_back(std::move(m));
   }
-  if (base) out.push_back(display_mesh(base->trajectory));
+  if (base && base->status != RunStatus::failed) out.push_back(display_mesh(base->trajectory));
   hooks.tell(1);
   return out;
 }
@@ -320,13 +322,14 @@ Table models_summary(const std::vector<MeasuredModel>& models) {
       continue;
     }
     table.rows.push_back(
-        {m.choice.name, std::to_string(m.solved_coordinates), std::to_string(m.constraints),
-         short_number(1e3 * m.cpu_median), short_number(m.cpu_median / models.front().cpu_median),
-         short_number(m.memory / 1e3), known(m.difference), known(m.tip_difference),
+        {m.choice.name + (m.outcome == "failed" ? " (failed)" : ""), std::to_string(m.solved_coordinates),
+         std::to_string(m.constraints), short_number(1e3 * m.cpu_median),
+         short_number(m.cpu_median / models.front().cpu_median), short_number(m.memory / 1e3),
+         known(m.difference), known(m.tip_difference),
          std::isnan(m.deployment_time) ? "" : short_number(m.deployment_time, 8),
          std::isnan(m.peak_force) ? ""
                                   : short_number(m.peak_force, 6) + (m.peak_unique ? "" : " (not unique)"),
-         short_number(1e3 * m.cpu_forces)});
+         known(1e3 * m.cpu_forces)});
   }
   return table;
 }

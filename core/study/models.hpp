@@ -22,6 +22,7 @@ std::vector<ModelChoice> model_choices(const SceneSource& source);
 struct MeasuredModel {
   ModelChoice choice;
   std::string outcome;  // the run's status, or why there is none
+  std::string message;  // why it failed; it has no answer then
   Index solved_coordinates = 0, constraints = 0;
   double cpu_median = 0, cpu_min = 0, cpu_max = 0;  // [s]
   double memory = 0;      // of the model and the solver, without the trajectory [bytes]

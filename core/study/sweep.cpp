@@ -34,6 +34,7 @@ Diagnostics asked_of(const SweepPlan& plan, Simulation& run) {
 struct Said {
   std::string moved = {};  // as in Sweep, of one point
   std::string why = {};    // it has no answer
+  std::vector<std::string> warnings = {};
 };
 
 // One point; nothing where it was cancelled.
@@ -56,7 +57,10 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const P
     if (run.status == RunStatus::stopped) return std::nullopt;
     const Diagnostics diagnostics = asked_of(plan, run);
     row.emplace_back(to_string(run.status));
-    if (run.status == RunStatus::failed) said.why = run.message;
+    if (run.status == RunStatus::failed)
+      said.why = run.message;
+    else
+      said.warnings = warnings_of(run, diagnostics);
     for (const RunMeasure& measure : plan.measures)
       row.push_back(exact_number(run.status == RunStatus::failed ? nan : measure.value(run, diagnostics)));
   } catch (const SceneError& error) {
@@ -140,6 +144,7 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
   std::size_t done = 0;
   using Words = std::pair<std::size_t, std::string>;  // of the first of some points
   std::map<std::string, Words> moved, why;            // by the outcome
+  std::map<std::size_t, std::vector<std::string>> warned;
   const auto keep = [](std::map<std::string, Words>& of, const std::string& outcome, Words words) {
     if (const auto [at, first] = of.try_emplace(outcome, words); !first && words < at->second)
       at->second = words;
@@ -164,6 +169,7 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
     const std::string& outcome = (*row)[plan.axes.size()];
     if (!of_point.moved.empty()) keep(moved, "", {open[i], of_point.moved});
     if (!of_point.why.empty()) keep(why, outcome, {open[i], of_point.why});
+    if (!of_point.warnings.empty()) warned.emplace(open[i], std::move(of_point.warnings));
     if (!hooks.team || hooks.team->holds(piece)) journal.append(std::move(*row));
     hooks.tell(static_cast<double>(++done) / static_cast<double>(open.size()));
   });
@@ -171,6 +177,13 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
   const auto text = [&](const Words& words) { return point_text(plan, words.first) + ": " + words.second; };
   for (const auto& [outcome, words] : moved) sweep.moved = text(words);
   for (const auto& [outcome, words] : why) sweep.why[outcome] = text(words);
+  if (!warned.empty())
+    for (const std::string& words : warned.begin()->second)
+      sweep.warnings.push_back(text({warned.begin()->first, words}));
+  if (warned.size() > 1)
+    sweep.warnings.push_back(
+        std::to_string(warned.size()) + " of " + std::to_string(done) +
+        " points are warned of, of which that is the first; a run of a point tells its own");
   return sweep;
 }
 

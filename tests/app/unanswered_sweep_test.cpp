@@ -64,4 +64,45 @@ TEST_CASE("what is wrong with an axis is said of --vary") {
         std::string::npos);
 }
 
+// Steps of 0.06 s of a double pendulum that whirls: runs warn of their balance, and so do what runs them.
+TEST_CASE("what runs are warned of is told where many are made") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> coarse{"--set", "solver.end_time=1", "--set", "solver.stages=2",
+                                        "--set", "solver.step=0.06"};
+  const auto with = [&](std::vector<std::string> words) {
+    words.insert(words.end(), coarse.begin(), coarse.end());
+    return run_program(words);
+  };
+  const std::string said = "the energy balance is off by ";
+  const ProgramResult run =
+      with({"run", "double_pendulum", "-o", dir / "run", "--quiet", "--set", "structure.rods[0].mass=1"});
+  REQUIRE(run.err.find("unfurl: warning: " + said) != std::string::npos);
+  const std::string told = run.err.substr(run.err.find(said), run.err.find('\n') - run.err.find(said));
+  const ProgramResult sweep = with({"sweep", "double_pendulum", "-o", dir / "sweep", "--vary",
+                                    "structure.rods[0].mass=1,2", "--measure", "peak_speed"});
+  INFO(sweep.err);
+  CHECK(sweep.code == 0);
+  CHECK(sweep.err.find("unfurl: warning: structure.rods[0].mass=1: " + told + "\n") != std::string::npos);
+  CHECK(sweep.err.find("unfurl: warning: 2 of 2 points are warned of") != std::string::npos);
+  const ProgramResult solve = with({"solve", "double_pendulum", "--find", "structure.rods[0].mass",
+                                    "--target", "final:kinetic_energy_J=6.4", "--between", "1.9:2.1"});
+  CHECK(solve.code == 0);
+  CHECK(solve.err.starts_with("unfurl: warning: " + said));
+}
+
+TEST_CASE("a failed run is no modelling choice to compare with") {
+  const ScratchDirectory dir;
+  const ProgramResult study =
+      run_program({"study", "double_pendulum", "--models", "-o", dir / "models", "--repeats", "1", "--set",
+                   "solver.method=rk4", "--set", "solver.step=0.05"});
+  INFO(study.err);
+  CHECK(study.code == 4);
+  CHECK(study.err.find("unfurl: warning: as the scene says: failed: ") != std::string::npos);
+  const std::string report = file_text(dir / "models/models.md");
+  const std::size_t row = report.find("| as the scene says (failed) |");
+  REQUIRE(row != std::string::npos);
+  // Neither differences nor forces nor their times.
+  CHECK(report.substr(row, report.find('\n', row) - row).ends_with("|  |  |  |  |  |"));
+}
+
 }  // namespace unanswered_sweep_test

@@ -573,6 +573,11 @@ def test_a_sweep_keeps_its_points(tmp_path):
     (folder / "sweep.csv").write_text(head + first.replace(repr(float(table["deploy_time_s"][0])), "123.25"))
     again = ring.sweep({"structure.fold_angle": [40, 55, 70]}, ["deploy_time"], out=folder)
     assert again["deploy_time_s"][0] == 123.25 and np.array_equal(again["deploy_time_s"][1:], table["deploy_time_s"][1:])
+    # What no run leaves is computed anew, and told.
+    (folder / "sweep.csv").write_text(head + first.replace("deployed", "banana") + "".join(rest))
+    with pytest.warns(RuntimeWarning, match="line 2 is no finished result and is computed anew"):
+        anew = ring.sweep({"structure.fold_angle": [40, 55, 70]}, ["deploy_time"], out=folder)
+    assert np.array_equal(anew["deploy_time_s"], table["deploy_time_s"])
     for other, measure in ((unfurl.Scene("hoop6_sector", set={"structure.hinge_force": 200}), "deploy_time"), (ring, "peak_energy")):
         with pytest.raises(unfurl.FileError):
             other.sweep({"structure.fold_angle": [40, 55, 70]}, [measure], out=folder)
