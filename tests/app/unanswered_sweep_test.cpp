@@ -75,14 +75,14 @@ TEST_CASE("what runs are warned of is told where many are made") {
   };
   const std::string said = "the energy balance is off by ";
   const ProgramResult run =
-      with({"run", "double_pendulum", "-o", dir / "run", "--quiet", "--set", "structure.rods[0].mass=1"});
+      with({"run", "double_pendulum", "-o", dir / "run", "--quiet", "--set", "structure.rods[0].mass=2"});
   REQUIRE(run.err.find("unfurl: warning: " + said) != std::string::npos);
   const std::string told = run.err.substr(run.err.find(said), run.err.find('\n') - run.err.find(said));
   const ProgramResult sweep = with({"sweep", "double_pendulum", "-o", dir / "sweep", "--vary",
-                                    "structure.rods[0].mass=1,2", "--measure", "peak_speed"});
+                                    "structure.rods[0].mass=2,2.05", "--measure", "peak_speed"});
   INFO(sweep.err);
   CHECK(sweep.code == 0);
-  CHECK(sweep.err.find("unfurl: warning: structure.rods[0].mass=1: " + told + "\n") != std::string::npos);
+  CHECK(sweep.err.find("unfurl: warning: structure.rods[0].mass=2: " + told + "\n") != std::string::npos);
   CHECK(sweep.err.find("unfurl: warning: 2 of 2 points are warned of") != std::string::npos);
   const ProgramResult solve = with({"solve", "double_pendulum", "--find", "structure.rods[0].mass",
                                     "--target", "final:kinetic_energy_J=6.4", "--between", "1.9:2.1"});
