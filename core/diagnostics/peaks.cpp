@@ -12,6 +12,7 @@
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/motion_samples.hpp"
 #include "core/diagnostics/peak_by_states.hpp"
+#include "core/diagnostics/peak_samples.hpp"
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/math/largest.hpp"
@@ -22,11 +23,12 @@
 namespace unfurl {
 namespace {
 
-constexpr std::size_t most_candidates = 3, most_alone = 16;
+constexpr std::size_t most_candidates = most_tops, most_alone = 16;
 constexpr double good_constraint = 1e-4;  // of a rod's length: beyond it there is no motion of the structure
 // Of the largest velocity, what accelerations within a step may miss of its change: for the quintic, which is
 // cheap, and for a step of the method to each time.
 constexpr double good_quintic = 1e-5, good_step = 0.1;
+constexpr double still = 1e-14;  // of the coordinates: a motion that is rounding
 
 bool follows(const Trajectory& run, std::size_t a, std::size_t b) {
   return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b);
@@ -159,7 +161,8 @@ class Neighbourhood {
       sum += weights[j];
       largest = std::max(largest, size(s.w));
     }
-    return size(end.w - a.w - (end.t - a.t) / sum * gained) <= good * largest;
+    const double h = end.t - a.t;
+    return size(end.w - a.w - h / sum * gained) * h <= good * largest * h + still * size(a.z);
   }
 
   State state_at(double t) const {
@@ -188,15 +191,6 @@ class Neighbourhood {
   std::vector<VectorXd> accelerations_;  // at state from_ and those after it; empty where there is none
   std::vector<std::size_t> by_steps_;    // of the steps from these states the quintic is not good enough
 };
-
-// Of the parabola through three points, within their times; the middle one where there is none.
-PeakInMotion vertex(const std::array<double, 3>& t, const std::array<double, 3>& x) {
-  const double left = (x[1] - x[0]) / (t[1] - t[0]), right = (x[2] - x[1]) / (t[2] - t[1]);
-  const double bend = (right - left) / (t[2] - t[0]);
-  if (!(bend < 0)) return {x[1], t[1]};
-  const double at = std::clamp(0.5 * (t[0] + t[1]) - left / (2 * bend), t[0], t[2]);
-  return {x[0] + (at - t[0]) * (left + bend * (at - t[1])), at};
-}
 
 // States around which the motion may top `best`: local maxima whose parabola reaches it, the highest first.
 // What happened between two events within one step has no state to say how high it went: the longest of
@@ -259,54 +253,33 @@ std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& va
   return steps;
 }
 
-// Values at 9 times of a span, both ends among them.
-struct Samples {
-  Samples(const Neighbourhood& around, double begin, double end, const StateValues& of) {
-    for (int k = 0; k <= 8; ++k) t.push_back(begin + (end - begin) * k / 8);
-    x = around.sample(t, of);
-  }
-  // The largest, and those that are no smaller than their neighbours and could reach `best` beside them; the
-  // highest first.
-  std::vector<std::size_t> tops(double best) const {
-    std::vector<std::pair<double, std::size_t>> found;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      if (std::isnan(x[k]) || (k > 0 && x[k - 1] > x[k]) || (k + 1 < x.size() && x[k + 1] > x[k])) continue;
-      const double reach = has_both(k) ? std::max(x[k], parabola(k).value) : x[k];
-      found.push_back({reach, k});
-    }
-    std::stable_sort(found.begin(), found.end(),
-                     [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::vector<std::size_t> out;
-    for (std::size_t k = 0; k < std::min(found.size(), most_candidates); ++k)
-      if (k == 0 || found[k].first >= best) out.push_back(found[k].second);
-    return out;
-  }
-  bool has_both(std::size_t k) const {
-    return k > 0 && k + 1 < x.size() && std::isfinite(x[k - 1]) && std::isfinite(x[k + 1]);
-  }
-  PeakInMotion parabola(std::size_t k) const {
-    return vertex({t[k - 1], t[k], t[k + 1]}, {x[k - 1], x[k], x[k + 1]});
-  }
-  std::vector<double> t, x;
-};
-
 // The largest value of what is around a state: of 9 in all of it, 9 around each of those that may lead to it,
-// and at the top of the parabola there.
+// and at the top of the parabola there; where that is a corner, of 9 in ever smaller parts.
 PeakInMotion closer(const Neighbourhood& around, const StateValues& values, PeakInMotion best) {
+  constexpr int most_zooms = 5;
   const auto take = [&best](double x, double t) {
     if (x > best.value) best = {x, t};
   };
-  const Samples all(around, around.begin(), around.end(), values);
-  for (std::size_t k = 0; k < all.x.size(); ++k) take(all.x[k], all.t[k]);
+  const auto samples = [&](double begin, double end) {
+    PeakSamples all(begin, end);
+    all.x = around.sample(all.t, values);
+    for (std::size_t k = 0; k < all.x.size(); ++k) take(all.x[k], all.t[k]);
+    return all;
+  };
+  const PeakSamples all = samples(around.begin(), around.end());
   for (const std::size_t k : all.tops(best.value)) {
-    const Samples some(around, all.t[k > 0 ? k - 1 : 0], all.t[std::min(k + 1, all.t.size() - 1)], values);
-    for (std::size_t j = 0; j < some.x.size(); ++j) take(some.x[j], some.t[j]);
+    PeakSamples some = samples(all.t[k > 0 ? k - 1 : 0], all.t[std::min(k + 1, all.t.size() - 1)]);
     for (const std::size_t at : some.tops(best.value)) {
       if (!some.has_both(at)) continue;
       const PeakInMotion top = some.parabola(at);
       const double there = around.sample({top.t}, values).front(), above = top.value - some.x[at];
       // A corner has no parabola; next to a singular pose one state by itself may say anything.
       take(std::abs(there - some.x[at]) <= 2 * above ? there : top.value, top.t);
+    }
+    for (int zoom = 0; zoom < most_zooms; ++zoom) {
+      const std::optional<std::size_t> at = some.corner();
+      if (!at) break;
+      some = samples(some.t[*at - 1], some.t[*at + 1]);
     }
   }
   return best;

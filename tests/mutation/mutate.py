@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Seeded errors in core: how many the tests find.
 
-    tests/mutation/mutate.py [SEED [N]] [--resume | --again]
+    tests/mutation/mutate.py [SEED [N]] [--only FOLDER...] [--resume | --again]
 
 Draws N errors from a seed, as many from each folder of core, no file more than a third of its folder, and compiles
 them in at once, each behind a switch (switch.hpp). Every test of core, render and the program, what others read of
@@ -31,6 +31,8 @@ from collections import defaultdict
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 WORK = os.path.join(ROOT, "build", "mutation")  # and the seed
 RELEASE = os.path.join(ROOT, "build", "release")  # where the tests were built
+
+ONLY = []  # folders of core; none: all
 
 # (kind, changed line, why): errors that no test can see, because nothing that is computed depends on them.
 EQUIVALENT = [
@@ -221,6 +223,7 @@ def draw(seed, n, dropped):
             folders[path.split("/")[1]].append((path, here))
     order = sorted(folders)
     random.Random(seed).shuffle(order)
+    order = [folder for folder in order if not ONLY or folder in ONLY]
     for place, folder in enumerate(order):
         quota = n // len(order) + (place < n % len(order))
         errors, taken = in_turn(seed, folder, folders[folder], -(-quota // 3)), None
@@ -494,10 +497,12 @@ def main():
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("seed", nargs="?", type=int, default=random.SystemRandom().randrange(10**6))
     words.add_argument("n", nargs="?", type=int, default=100)
+    words.add_argument("--only", nargs="+", default=[], help="folders of core")
     words.add_argument("--resume", action="store_true")
     words.add_argument("--again", action="store_true")
     given = words.parse_args()
-    global WORK
+    global WORK, ONLY
+    ONLY = given.only
     table, WORK = os.path.join(WORK, f"{given.seed}.tsv"), os.path.join(WORK, str(given.seed))
     os.makedirs(WORK, exist_ok=True)
     os.nice(10)

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Values at equal distances of time, and where between them the largest may lie.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/diagnostics/peaks.hpp"
+
+namespace unfurl {
+
+inline constexpr std::size_t most_tops = 3;  // that are looked at more closely
+
+// Of the parabola through three points, within their times; the middle one where there is none.
+inline PeakInMotion vertex(const std::array<double, 3>& t, const std::array<double, 3>& x) {
+  const double left = (x[1] - x[0]) / (t[1] - t[0]), right = (x[2] - x[1]) / (t[2] - t[1]);
+  const double bend = (right - left) / (t[2] - t[0]);
+  if (!(bend < 0)) return {x[1], t[1]};
+  const double at = std::clamp(0.5 * (t[0] + t[1]) - left / (2 * bend), t[0], t[2]);
+  return {x[0] + (at - t[0]) * (left + bend * (at - t[1])), at};
+}
+
+// At 9 times of a span, both ends among them.
+struct PeakSamples {
+  PeakSamples(double begin, double end) {
+    for (int k = 0; k <= 8; ++k) t.push_back(begin + (end - begin) * k / 8);
+  }
+  // The largest, and those that are no smaller than their neighbours and could reach `best` beside them; the
+  // highest first.
+  std::vector<std::size_t> tops(double best) const {
+    std::vector<std::pair<double, std::size_t>> found;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      if (std::isnan(x[k]) || (k > 0 && x[k - 1] > x[k]) || (k + 1 < x.size() && x[k + 1] > x[k])) continue;
+      const double reach = has_both(k) ? std::max(x[k], parabola(k).value) : x[k];
+      found.push_back({reach, k});
+    }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<std::size_t> out;
+    for (std::size_t k = 0; k < std::min(found.size(), most_tops); ++k)
+      if (k == 0 || found[k].first >= best) out.push_back(found[k].second);
+    return out;
+  }
+  bool has_both(std::size_t k) const {
+    return k > 0 && k + 1 < x.size() && std::isfinite(x[k - 1]) && std::isfinite(x[k + 1]);
+  }
+  PeakInMotion parabola(std::size_t k) const {
+    return vertex({t[k - 1], t[k], t[k + 1]}, {x[k - 1], x[k], x[k + 1]});
+  }
+  // The largest, where two smooth curves meet beside it: it bends otherwise than its neighbours do.
+  std::optional<std::size_t> corner() const {
+    constexpr double told = 1e-9;  // of the value: less is rounding of it
+    std::size_t top = 0;
+    for (std::size_t k = 1; k < x.size(); ++k)
+      if (x[k] > x[top]) top = k;
+    if (!has_both(top)) return {};
+    const auto bend = [&](std::size_t k) { return x[k + 1] - 2 * x[k] + x[k - 1]; };
+    const double rounding = told * std::abs(x[top]);
+    const auto unlike = [&](std::size_t k) {
+      return has_both(k) && std::abs(bend(k) - bend(top)) >
+                                std::max(0.75 * std::max(std::abs(bend(k)), std::abs(bend(top))), rounding);
+    };
+    return unlike(top - 1) || unlike(top + 1) ? std::optional(top) : std::nullopt;
+  }
+  std::vector<double> t, x;
+};
+
+}  // namespace unfurl
