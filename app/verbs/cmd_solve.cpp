@@ -22,7 +22,6 @@
 #include "core/study/scene_variation.hpp"
 #include "core/study/solve_for.hpp"
 #include "core/study/tolerance.hpp"
-#include "core/system/fit_lengths.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {
@@ -136,8 +135,6 @@ int cmd_solve(const Arguments& arguments) {
       const Diagnostics diagnostics = judge(run);
       if (run.status == RunStatus::failed) return std::numeric_limits<double>::quiet_NaN();
       warned[x] = warnings_of(run, diagnostics);
-      if (std::string note = note_of_moved_nodes(model->structure); !note.empty())
-        warned[x].push_back(std::move(note));
       if (!flag.empty()) unique[x] = find_measure(flag).value(run, diagnostics) != 0.0;
       return target.measure.value(run, diagnostics);
     } catch (const SceneError&) {

@@ -61,6 +61,10 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const P
       said.why = run.message;
     else
       said.warnings = warnings_of(run, diagnostics);
+    // What does nothing in one point may do something in others: that is told of axes.
+    std::erase_if(said.warnings, [&](const std::string& text) {
+      return text.find("does nothing") != std::string::npos || text == said.moved;
+    });
     for (const RunMeasure& measure : plan.measures)
       row.push_back(exact_number(run.status == RunStatus::failed ? nan : measure.value(run, diagnostics)));
   } catch (const SceneError& error) {
