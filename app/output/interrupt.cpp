@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "app/output/exit_code.hpp"
+#include "core/export/pending_files.hpp"
 #include "render/image/child_process.hpp"
 
 namespace unfurl {
@@ -35,9 +36,10 @@ void say(std::string_view text) {
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
-// Without destructors: nothing of ours needs them, a temporary file that stays is removed by the next run.
+// Without destructors: nothing of ours needs them but files that are being written.
 [[noreturn]] void end_now() {
   end_children();
+  remove_pending_files();
   if (bar_shown) say("\r\x1b[K");
   say("unfurl: interrupted; what is finished is kept\n");
   ::_exit(exit_interrupted);

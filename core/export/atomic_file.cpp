@@ -13,12 +13,15 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
+#include <mutex>
 #include <random>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "core/export/checksum.hpp"
+#include "core/export/pending_files.hpp"
 #include "core/export/run_tables.hpp"
 
 namespace unfurl {
@@ -53,6 +56,32 @@ int write_all(int file, const std::byte* data, std::size_t size) {
     size -= static_cast<std::size_t>(written);
   }
   return 0;
+}
+
+// In memory that is always there, and read without the lock: by handlers, which may ask for neither.
+struct PendingName {
+  std::atomic<bool> known{false};
+  std::array<char, 1024> text{};
+};
+std::array<PendingName, 32> pending_names;
+std::mutex pending_lock;
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void remember(const std::string& name) {
+  if (name.size() >= pending_names[0].text.size()) return;
+  const std::lock_guard lock(pending_lock);
+  for (PendingName& slot : pending_names) {
+    if (slot.known) continue;
+    std::memcpy(slot.text.data(), name.c_str(), name.size() + 1);
+    slot.known = true;
+    return;
+  }
+}
+
+void forget(const std::string& name) {
+  const std::lock_guard lock(pending_lock);
+  for (PendingName& slot : pending_names)
+    if (slot.known && name == slot.text.data()) slot.known = false;
 }
 
 // A file's new name is in its directory, which is a file too. What cannot be flushed is not an error: there
@@ -117,6 +146,14 @@ bool is_unfinished_name(std::string_view name) {
   if (!name.starts_with(unfinished_prefix) || !name.ends_with(unfinished_suffix)) return false;
   const std::string_view digits = name.substr(unfinished_prefix.size(), unfinished_digits);
   return digits.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+void remove_pending_files() noexcept {
+  for (PendingName& slot : pending_names) {
+    if (!slot.known) continue;
+    const std::string_view path = slot.text.data();
+    if (is_unfinished_name(path.substr(path.rfind('/') + 1))) ::unlink(slot.text.data());
+  }
 }
 
 void remove_abandoned(const std::filesystem::path& unfinished) {
@@ -186,9 +223,11 @@ PendingFile::PendingFile(std::filesystem::path target) : target_(std::move(targe
     // Taken for abandoned in the moment before it was locked: again.
     if (::fstat(file_, &status) == 0 && status.st_nlink == 0) ::close(std::exchange(file_, -1));
   }
+  remember(temporary_.native());
 }
 
 PendingFile::~PendingFile() {
+  forget(temporary_.native());
   if (file_ < 0) return;
   ::close(file_);
   ::unlink(temporary_.c_str());
