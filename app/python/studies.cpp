@@ -7,25 +7,22 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
 
 #include "app/python/asker.hpp"
-#include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
-#include "core/simulate/singular_poses.hpp"
+#include "core/study/scene_objective.hpp"
 #include "core/study/scene_variation.hpp"
 #include "core/study/solve_for.hpp"
 #include "core/study/study.hpp"
 #include "core/study/sweep.hpp"
-#include "core/study/tolerance.hpp"
 #include "core/text/nearest_name.hpp"
 #include "core/text/version.hpp"
 
@@ -200,29 +197,19 @@ double solve_scene(const SceneSource& given, const std::string& key, const std::
   hooks.cancelled = [&asker] { return asker(); };
   StudyHooks asking;
   asking.cancelled = hooks.cancelled;
-  std::map<double, std::vector<std::string>> warned;
-  const Objective objective = [&](double x) {
-    try {
-      const Scene changed = source.read({key + "=" + exact_number(x)});
-      Simulation run =
-          simulate_as_asked(build_model(changed), study_solver(changed, {key}, {measure}), hooks);
-      if (may_have_no_bound(measure.name)) record_singular_poses(run);
-      const Diagnostics diagnostics = judge(run);
-      warned[x] = warnings_of(run, diagnostics);
-      return run.status == RunStatus::failed ? NAN : measure.value(run, diagnostics);
-    } catch (const SceneError&) {
-      return static_cast<double>(NAN);
-    }
-  };
+  SceneObjective objective(source, key, measure, hooks);
   double found = 0;
   try {
     const py::gil_scoped_release release;
-    found = solve_for(objective, target, options, asking).x;
+    found = solve_for([&](double x) { return objective.at(x); }, target, options, asking).x;
   } catch (const Cancelled&) {
     asker.raise();
     throw;
   }
-  warn(warned[found]);
+  warn(objective.warnings(found));
+  if (objective.unique(found) == false)
+    warn({measure.name +
+          " is not unique there: the model does not determine it, or the steps do not follow it"});
   return found;
 }
 

@@ -2,8 +2,6 @@
 // unfurl solve SCENE --find KEY --target NAME=VALUE: the parameter for which a measure takes a value.
 #include <cmath>
 #include <iostream>
-#include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -12,16 +10,14 @@
 #include "app/output/output_directory.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/study_session.hpp"
-#include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/write.hpp"
-#include "core/simulate/singular_poses.hpp"
+#include "core/study/scene_objective.hpp"
 #include "core/study/scene_variation.hpp"
 #include "core/study/solve_for.hpp"
-#include "core/study/tolerance.hpp"
 #include "core/text/nearest_name.hpp"
 
 namespace unfurl {
@@ -123,32 +119,15 @@ int cmd_solve(const Arguments& arguments) {
   const InterruptGuard guard;
   SimulationHooks hooks;
   hooks.cancelled = interrupted;
-  const std::string flag = uniqueness_of(target.measure.name);
-  std::map<double, bool> unique;  // by the parameter
-  std::map<double, std::vector<std::string>> warned;
-  const Objective objective = [&](double x) {
-    try {
-      const Scene changed = source.read({study.find + "=" + exact_number(x)});
-      const auto model = build_model(changed);
-      Simulation run = simulate_as_asked(model, study_solver(changed, {study.find}, {target.measure}), hooks);
-      if (may_have_no_bound(target.measure.name)) record_singular_poses(run);
-      const Diagnostics diagnostics = judge(run);
-      if (run.status == RunStatus::failed) return std::numeric_limits<double>::quiet_NaN();
-      warned[x] = warnings_of(run, diagnostics);
-      if (!flag.empty()) unique[x] = find_measure(flag).value(run, diagnostics) != 0.0;
-      return target.measure.value(run, diagnostics);
-    } catch (const SceneError&) {
-      return std::numeric_limits<double>::quiet_NaN();
-    }
-  };
+  SceneObjective objective(source, study.find, target.measure, hooks);
   StudyHooks asking;
   asking.cancelled = interrupted;
   try {
-    const Solved solved = solve_for(objective, target.value, options, asking);
-    for (const std::string& text : warned[solved.x]) std::cerr << "unfurl: warning: " << text << "\n";
+    const Solved solved = solve_for([&](double x) { return objective.at(x); }, target.value, options, asking);
+    for (const std::string& text : objective.warnings(solved.x))
+      std::cerr << "unfurl: warning: " << text << "\n";
     if (!output.path().empty()) write_results(output.path(), study.find, source, target, solved);
-    std::optional<bool> solved_force;
-    if (const auto at = unique.find(solved.x); at != unique.end()) solved_force = at->second;
+    const std::optional<bool> solved_force = objective.unique(solved.x);
     if (arguments.json)
       std::cout << result_json(study, target, solved, solved_force);
     else

@@ -57,8 +57,8 @@ struct PeakSamples {
     constexpr double told = 1e-9;  // of the value: less is rounding of it
     std::size_t top = 0;
     for (std::size_t k = 1; k < x.size(); ++k)
-      if (x[k] > x[top]) top = k;
-    if (!has_both(top)) return {};
+      if (!(x[k] <= x[top]) && !std::isnan(x[k])) top = k;
+    if (!has_both(top) || std::isnan(x[top])) return {};
     const auto bend = [&](std::size_t k) { return x[k + 1] - 2 * x[k] + x[k - 1]; };
     const double rounding = told * std::abs(x[top]);
     const auto unlike = [&](std::size_t k) {

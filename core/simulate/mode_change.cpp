@@ -98,13 +98,11 @@ class Change {
     return std::move(out_);
   }
   bool fail_at(Index row) {
-    out_.failure = "a drive pushes against the stop " + sides_.stops()[side(row)].name;
+    const StopSide& at = sides_.stops()[side(row)];
+    out_.failure = (at.reeled ? "a drive pulls at the cable " : "a drive pushes against the stop ") + at.name;
     return false;
   }
-  void turn(std::size_t i, bool active) {
-    sides_.set_active(i, active);
-    tell(i);
-  }
+  void turn(std::size_t i, bool active) { sides_.set_active(i, active), tell(i); }
   void tell(std::size_t i) {
     if (std::ranges::find(out_.turned, i) == out_.turned.end()) out_.turned.push_back(i);
     out_.changed = true;

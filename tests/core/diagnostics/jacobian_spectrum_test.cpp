@@ -39,6 +39,31 @@ TEST_CASE("a structure without singular poses keeps its spectrum away from zero"
   for (const double sigma : s.smallest[0]) CHECK(sigma > 0.1);
 }
 
+// Unit rows: three that fix O, [-u1, u1, 0] / sqrt 2 and [0, -u2, u2] / sqrt 2. G G^T has the eigenvalues
+// 1, three times, and 1 -+ sqrt(1/2 + c^2 / 4) with c = u1 . u2.
+TEST_CASE("the spectrum of a double pendulum follows the angle between its rods") {
+  const Simulation run = simulate(make_model(double_pendulum()), dvm_options(3, 0.02, 1.0));
+  const JacobianSpectrum s = jacobian_spectrum(run);
+  REQUIRE(s.rank == 5);
+  REQUIRE(s.smallest.size() == 3);
+  REQUIRE(s.t.size() == run.trajectory.size());
+  double least = 1, most = 0;
+  for (std::size_t i = 0; i < s.t.size(); ++i) {
+    CHECK(s.t[i] == run.trajectory.time(i));
+    const VectorXd x = run.trajectory.node_positions(i);
+    const Vec3 u = (x.segment<3>(3) - x.segment<3>(0)).normalized(),
+               v = (x.segment<3>(6) - x.segment<3>(3)).normalized();
+    const double c = u.dot(v), apart = std::sqrt(0.5 + c * c / 4);
+    // Round-off of a decomposition of five rows, its least value 0.37.
+    CHECK(s.largest[i] == Approx(std::sqrt(1 + apart)).epsilon(1e-13));
+    CHECK(s.smallest[0][i] == Approx(std::sqrt(1 - apart)).epsilon(1e-13));
+    CHECK(s.smallest[1][i] == Approx(1).epsilon(1e-13));
+    CHECK(s.smallest[2][i] == Approx(1).epsilon(1e-13));
+    least = std::min(least, std::abs(c)), most = std::max(most, std::abs(c));
+  }
+  CHECK(most - least > 0.3);  // it does turn
+}
+
 TEST_CASE("a spectrum takes as many states as its work allows, evenly from the first to the last") {
   // 2e8 of rows x columns x the smaller of the two: 400 states of a chain of 40, fewer of a
   // chain of 60.

@@ -69,8 +69,8 @@ TEST_CASE("a motor turns a crank and reports the torque and power it gives") {
 }
 
 // It is at the stop with hardly any speed: no impact says that it cannot go on.
-TEST_CASE("a drive that sets off into a stop it touches ends there") {
-  const Simulation run = run_scene(R"(
+TEST_CASE("a drive that sets off into a stop or a cable that it touches ends there") {
+  const std::string begin = R"(
 [structure]
 kind = "custom"
 nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1, 0, 0], mass = 1}]
@@ -83,21 +83,25 @@ motion = "rate"
 rate = 0.3
 ramp = 0.2
 start = 0.0133
-[[constraints]]
-kind = "coordinate_stop"
-name = "wall"
-nodes = ["A"]
-direction = [1, 0, 0]
-max = 1.00000000002
 [solver]
 step = 0.003
 end_time = 0.4
-)");
-  REQUIRE(run.status == RunStatus::failed);
-  CHECK(run.message.find("a drive pushes against the stop wall") != std::string::npos);
-  // The ramp begins with 22.5 t^2 m/s, which is 2e-11 m after 1.4e-4 s.
-  CHECK(run.trajectory.end_time() == Approx(0.0133 + std::cbrt(2e-11 / 7.5)).margin(1e-5));
-  CHECK(run.warnings.empty());
+[[constraints]]
+)";
+  for (const auto& [held_by, told] :
+       {std::pair{"kind = 'coordinate_stop'\nname = 'wall'\nnodes = ['A']\ndirection = [1, 0, 0]\n"
+                  "max = 1.00000000002\n",
+                  "a drive pushes against the stop wall"},
+        {"kind = 'cable'\nname = 'rope'\nnodes = ['O', 'A']\nlength = 1.00000000002\n",
+         "a drive pulls at the cable rope"}}) {
+    const Simulation run = run_scene(begin + held_by);
+    INFO(told << " | " << run.message);
+    REQUIRE(run.status == RunStatus::failed);
+    CHECK(run.message.find(told) != std::string::npos);
+    // The ramp begins with 22.5 t^2 m/s, which is 2e-11 m after 1.4e-4 s.
+    CHECK(run.trajectory.end_time() == Approx(0.0133 + std::cbrt(2e-11 / 7.5)).margin(1e-5));
+    CHECK(run.warnings.empty());
+  }
 }
 
 // 2 kg on a line, a rod of 1.5 kg on it and on a slider beside: from rest to 0.3 m/s, whatever a ramp does
