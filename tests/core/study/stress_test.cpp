@@ -108,6 +108,24 @@ TEST_CASE("very many steps of a damped motion are not called growth of energy") 
   }
 }
 
+// It turns over no energy: what rounding alone leaves of a balance of 20 J m is no growth of it.
+TEST_CASE("a pendulum that hangs at rest is right at any strength of its forces") {
+  const auto text = std::make_shared<const std::string>(
+      "[structure]\nkind = 'pendulum'\nangle = 0.0\n[gravity]\nacceleration = [0, 0, -9.81]\n"
+      "[solver]\nend_time = 2\nstep = 0.05\n");
+  StressPlan plan = plan_stress({"one.toml", {}, text, "."}, {"force"});
+  plan.extremes[0].values = {1, 1e6};
+  plan.steps = {64, 256};
+  plan.long_steps = 0;
+  Journal journal({}, stress_columns(), stress_key_columns);
+  const Stress stress = run_stress(plan, journal, {});
+  REQUIRE(stress.cells.size() == plan.settings.size() * 4);
+  for (const StressCell& cell : stress.cells) {
+    INFO(cell.setting << " " << cell.value << " " << cell.steps << ": " << cell.run.energy_error);
+    CHECK(cell.verdict == Verdict::right);
+  }
+}
+
 TEST_CASE("an extreme that is not there is named") {
   CHECK_THROWS_WITH(plan_stress({find_scene("hoop6"), {}}, {"forces"}),
                     Catch::Contains("did you mean 'force'"));
