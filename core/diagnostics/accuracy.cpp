@@ -237,8 +237,9 @@ std::string without_bound(const Trajectory& run) {
   return {};
 }
 
-// Of a run that goes through singular poses; empty where its rods' forces are bounded there.
-std::string without_bound_on_the_way(const Simulation& run, const Diagnostics& d) {
+}  // namespace
+
+std::string rise_on_the_way(const Simulation& run, const Diagnostics& d) {
   if (std::ranges::none_of(run.events, [](const Event& e) { return e.kind == "singular_pose"; })) return {};
   const RememberedExtremes once;
   const PeakInMotion most = extreme_of_column(run, d, "axial_force_max_N", true),
@@ -254,6 +255,8 @@ std::string without_bound_on_the_way(const Simulation& run, const Diagnostics& d
           "pose that was looked at, and larger with shorter steps";
   return text.str();
 }
+
+namespace {
 
 std::string words_of_interruption(const Diagnostics& d) {
   if (d.left_open >= d.t.size())
@@ -312,7 +315,7 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
   }
   if (std::string text_of_forces = without_bound(run.trajectory); !text_of_forces.empty())
     warnings.push_back(std::move(text_of_forces));
-  if (std::string on_the_way = without_bound_on_the_way(run, d); !on_the_way.empty())
+  if (std::string on_the_way = rise_on_the_way(run, d); !on_the_way.empty())
     warnings.push_back(std::move(on_the_way));
   return warnings;
 }

@@ -34,6 +34,13 @@ bool follows(const Trajectory& run, std::size_t a, std::size_t b) {
   return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b);
 }
 
+// What is kept of a run that is not kept whole (RunDigest) stands alone: no step leads to or from it.
+bool alone(const Trajectory& run, std::size_t i) {
+  const VectorXd& lambda = run.state(i).lambda;
+  return run.report(i).singular_event && run.model(i).system.constraints() > 0 &&
+         (lambda.size() == 0 || !lambda.allFinite());
+}
+
 // A step with a smooth motion leads from state a to state b. Into a singular pose, which has no
 // accelerations, only a long one: of others the states before it tell.
 bool joined(const Trajectory& run, std::size_t a, std::size_t b) {
@@ -52,8 +59,11 @@ class Neighbourhood {
     const Trajectory& t = run.trajectory;
     const Model* model = &t.model(i);
     if (all_) {
-      while (first_ > 0 && i - first_ < 8 && follows(t, first_ - 1, first_)) --first_;
-      while (last_ + 1 < t.size() && last_ - i < 8 && follows(t, last_, last_ + 1)) ++last_;
+      const auto step = [&t](std::size_t k) {
+        return follows(t, k, k + 1) && !alone(t, k) && !alone(t, k + 1);
+      };
+      while (first_ > 0 && i - first_ < 8 && step(first_ - 1)) --first_;
+      while (last_ + 1 < t.size() && last_ - i < 8 && step(last_)) ++last_;
       return;
     }
     if (i > 0 && joined(t, i - 1, i)) first_ = i - 1;

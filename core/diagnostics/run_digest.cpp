@@ -5,12 +5,15 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <tuple>
 #include <utility>
 
+#include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/good_part.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/peaks.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
 #include "core/diagnostics/rod_strength.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/singular_poses.hpp"
@@ -74,6 +77,19 @@ void add_rods(const Structure& structure, const Diagnostics& d, std::set<std::si
         }
       if (row >= 0) rows.insert(static_cast<std::size_t>(row));
     }
+}
+
+// The largest tension and compression of the motion, and the rows that are to hold them: those of the states
+// with the largest.
+std::vector<std::pair<std::size_t, PeakForce>> peaks_of_rods(const Simulation& run, const Diagnostics& d) {
+  std::vector<std::pair<std::size_t, PeakForce>> out;
+  for (const auto& [pull, column, sign] : {std::tuple{Pull::tension, "axial_force_max_N", 1.0},
+                                           {Pull::compression, "axial_force_min_N", -1.0}}) {
+    const std::size_t row = row_of_largest(d.at(column).values, sign);
+    const PeakForce peak = peak_rod_force(run, d, pull);
+    if (row < d.t.size() && peak.rod >= 0) out.emplace_back(row, peak);
+  }
+  return out;
 }
 
 // The lowest value before the largest rise, and where that ends.
@@ -257,6 +273,7 @@ Digest RunDigest::thinned(const Digest& all) const {
       }
       found[largest ? 0 : 1].emplace_back(row, value);
     }
+  const auto peaks = peaks_of_rods(all.run, d);
   for (std::size_t i = 0; i < trajectory.size(); ++i)
     if (without_forces(trajectory, i)) rows.insert(i);
   add_rods(trajectory.structure(), d, rows);
@@ -290,13 +307,20 @@ Digest RunDigest::thinned(const Digest& all) const {
       out.diagnostics.columns[c].values.push_back(value);
     }
     out.diagnostics.axial_force.row(to) = d.axial_force.row(static_cast<Index>(i));
-    out.diagnostics.force_unique.row(to++) = d.force_unique.row(static_cast<Index>(i));
+    out.diagnostics.force_unique.row(to) = d.force_unique.row(static_cast<Index>(i));
+    for (const auto& [row, peak] : peaks)
+      if (row == i) {
+        out.diagnostics.axial_force(to, peak.rod) = peak.force_N;
+        out.diagnostics.force_unique(to, peak.rod) = peak.unique;
+      }
+    ++to;
   }
   return out;
 }
 
 Digest RunDigest::whole(const Simulation& last_window) const {
   Digest out = all_;
+  if (!rise_.empty() && rise_on_the_way(out.run, out.diagnostics).empty()) out.run.warnings.push_back(rise_);
   if (doubt_.empty()) return out;
   const std::size_t before = kept_.run.trajectory.size();
   if (trusted_ > 0) {
@@ -316,6 +340,8 @@ Digest RunDigest::whole(const Simulation& last_window) const {
 }
 
 void RunDigest::settle() {
+  const RememberedExtremes once;
+  if (rise_.empty()) rise_ = rise_on_the_way(all_.run, all_.diagnostics);
   kept_ = thinned(all_);
   all_ = empty();
 }
@@ -327,6 +353,7 @@ void RunDigest::archive(Archive& archive) {
   archive(ends_);
   archive(known_);
   archive_events(archive, singular_);
+  archive(rise_);
 }
 
 void RunDigest::archive_digest(Archive& archive, Digest& digest) const {

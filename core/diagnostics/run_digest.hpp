@@ -60,6 +60,7 @@ class RunDigest {
   std::vector<double> ends_;  // of every column, at the last state
   KnownUniqueness known_;     // of the present model's forces
   std::vector<Event> singular_;
+  std::string rise_;  // rise_on_the_way() of windows before the last
 };
 
 }  // namespace unfurl
