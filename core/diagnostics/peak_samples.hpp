@@ -52,20 +52,23 @@ struct PeakSamples {
   PeakInMotion parabola(std::size_t k) const {
     return vertex({t[k - 1], t[k], t[k + 1]}, {x[k - 1], x[k], x[k + 1]});
   }
-  // The largest, where two smooth curves meet beside it: it bends otherwise than its neighbours do.
-  std::optional<std::size_t> corner() const {
+  // Whether two smooth curves meet beside it: it bends otherwise than its neighbours do.
+  bool is_corner(std::size_t at) const {
     constexpr double told = 1e-9;  // of the value: less is rounding of it
-    std::size_t top = 0;
-    for (std::size_t k = 1; k < x.size(); ++k)
-      if (!(x[k] <= x[top]) && !std::isnan(x[k])) top = k;
-    if (!has_both(top) || std::isnan(x[top])) return {};
+    if (!has_both(at) || std::isnan(x[at])) return false;
     const auto bend = [&](std::size_t k) { return x[k + 1] - 2 * x[k] + x[k - 1]; };
-    const double rounding = told * std::abs(x[top]);
+    const double rounding = told * std::abs(x[at]);
     const auto unlike = [&](std::size_t k) {
-      return has_both(k) && std::abs(bend(k) - bend(top)) >
-                                std::max(0.75 * std::max(std::abs(bend(k)), std::abs(bend(top))), rounding);
+      return has_both(k) && std::abs(bend(k) - bend(at)) >
+                                std::max(0.75 * std::max(std::abs(bend(k)), std::abs(bend(at))), rounding);
     };
-    return unlike(top - 1) || unlike(top + 1) ? std::optional(top) : std::nullopt;
+    return unlike(at - 1) || unlike(at + 1);
+  }
+  std::optional<std::size_t> largest() const {
+    std::optional<std::size_t> top;
+    for (std::size_t k = 0; k < x.size(); ++k)
+      if (!std::isnan(x[k]) && (!top || x[k] > x[*top])) top = k;
+    return top;
   }
   std::vector<double> t, x;
 };

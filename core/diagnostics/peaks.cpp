@@ -283,12 +283,15 @@ PeakInMotion closer(const Neighbourhood& around, const StateValues& values, Peak
       if (!some.has_both(at)) continue;
       const PeakInMotion top = some.parabola(at);
       const double there = around.sample({top.t}, values).front(), above = top.value - some.x[at];
-      // A corner has no parabola; next to a singular pose one state by itself may say anything.
-      take(std::abs(there - some.x[at]) <= 2 * above ? there : top.value, top.t);
+      // Next to a singular pose one state by itself may say anything. A corner has no parabola.
+      if (std::abs(there - some.x[at]) <= 2 * above)
+        take(there, top.t);
+      else if (!some.is_corner(at))
+        take(top.value, top.t);
     }
     for (int zoom = 0; zoom < most_zooms; ++zoom) {
-      const std::optional<std::size_t> at = some.corner();
-      if (!at) break;
+      const std::optional<std::size_t> at = some.largest();
+      if (!at || !some.is_corner(*at)) break;
       some = samples(some.t[*at - 1], some.t[*at + 1]);
     }
   }
