@@ -224,6 +224,8 @@ Digest RunDigest::with_rows(const Digest& before, const Simulation& window, cons
       run.trajectory.change_model(std::shared_ptr<const Model>(std::shared_ptr<const Model>(), now));
     }
     run.trajectory.append(window.trajectory.state(i), window.trajectory.report(i));
+    if (const VectorXd* u = window.trajectory.stretch(i))
+      run.trajectory.add_stretch(run.trajectory.size() - 1, *u);
   }
   Diagnostics& rows = out.diagnostics;
   const auto count = static_cast<Index>(last - first), old = static_cast<Index>(rows.t.size());

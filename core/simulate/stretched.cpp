@@ -117,7 +117,7 @@ class StretchedRun {
     for (const auto& [i, doubt] : odd) good_[i] = 0;
     for (const auto& [i, doubt] : odd) interpolate(i, doubt);
     for (std::size_t i = 1; i < u_.size(); ++i)
-      if (!own[i]) u_[i] = u_[i - 1];
+      if (!own[i]) u_[i] = limit(i);
     return std::move(u_);
   }
 
@@ -181,6 +181,41 @@ class StretchedRun {
       states.insert(states.end(), behind.begin(), behind.end());
     VectorXd u = through(states, i);
     if ((u - u_[i]).lpNorm<Eigen::Infinity>() <= doubt) u_[i] = std::move(u);
+  }
+
+  // Of a singular pose, which has no displacement of its own, what those of the motion before it tend to: the
+  // polynomial through six poses on the way to it, at the distance at which the last of them changes it
+  // least. That of the state before where none tells, as beside forces that have no bound.
+  VectorXd limit(std::size_t i) {
+    constexpr int points = 6;
+    constexpr double sum_of_weights = 63, told = 0.1;  // of the displacement
+    const VectorXd& lambda = trajectory_.state(i).lambda;
+    VectorXd best = u_[i - 1];
+    if (!joined(i - 1, i) || !lambda.allFinite()) return best;
+    std::size_t first = i - 1;
+    while (first > 0 && i - first < 64 && joined(first - 1, first)) --first;
+    const double end = trajectory_.time(i), step = end - trajectory_.time(i - 1);
+    double least = told * size(i - 1);
+    for (double apart = step / 256; points * apart < end - trajectory_.time(first); apart *= 2) {
+      std::vector<VectorXd> near(points);
+      double worst = 0;
+      for (int k = 0; k < points; ++k) {
+        double doubt = 0;
+        if (!at(i).closely(trajectory_.state_at(end - apart * (k + 1)), near[k], doubt)) return best;
+        worst = std::max(worst, doubt);
+      }
+      const auto time = [&](std::size_t k) { return -static_cast<double>(k + 1); };
+      const auto through = [&](std::size_t count) {
+        VectorXd u = VectorXd::Zero(best.size());
+        for (std::size_t k = 0; k < count; ++k) u += lagrange_weight(k, count, 0.0, time) * near[k];
+        return u;
+      };
+      VectorXd u = through(points);
+      const double off = (u - through(points - 1)).lpNorm<Eigen::Infinity>() + sum_of_weights * worst;
+      if (off < least) least = off, best = std::move(u);
+      if (least <= rough * size(i - 1)) break;
+    }
+    return best;
   }
 
   double size(std::size_t i) const { return u_[i].lpNorm<Eigen::Infinity>(); }

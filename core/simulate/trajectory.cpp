@@ -57,7 +57,7 @@ VectorXd Trajectory::node_velocities(std::size_t i) const {
 }
 
 void Trajectory::add_stretch(std::size_t i, VectorXd displacement) {
-  if (stretch_.empty()) stretch_.assign(size(), VectorXd::Zero(displacement.size()));
+  if (stretch_.size() < size()) stretch_.resize(size(), VectorXd::Zero(displacement.size()));
   stretch_[i] = std::move(displacement);
 }
 
@@ -71,7 +71,7 @@ VectorXd Trajectory::stretch_at(double t) const {
 
 VectorXd Trajectory::positions(std::size_t i) const {
   VectorXd q = node_positions(i);
-  if (!stretch_.empty()) q += stretch_[i];
+  if (const VectorXd* u = stretch(i)) q += *u;
   return whole_positions(structure(), q);
 }
 VectorXd Trajectory::velocities(std::size_t i) const {

@@ -61,6 +61,7 @@ class Trajectory {
   // What rods give in a quasi-static model is added to the positions of the whole that are shown, not to the
   // states: displacements of the solved nodes at state i [3 n] (stretched.hpp).
   void add_stretch(std::size_t i, VectorXd displacement);
+  const VectorXd* stretch(std::size_t i) const { return i < stretch_.size() ? &stretch_[i] : nullptr; }
   State state_at(double t) const;
   std::size_t state_before(double t) const;  // the last state at or before t; the first one before the start
 
