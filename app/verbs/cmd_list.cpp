@@ -126,7 +126,8 @@ constexpr std::string_view column_note =
     "a fold angle are there where the scene has them.";
 
 constexpr std::string_view measure_note =
-    "Every column is one with max:, min: or final: before it, those of drives and supports and a structure's "
+    "Every column but the time is one with max:, min: or final: before it, those of drives and supports and "
+    "a structure's "
     "own, too, as final:surface_rms_m of a mesh_reflector; unfurl list columns.";
 
 constexpr std::string_view surface_note =

@@ -120,7 +120,8 @@ std::vector<char> followed_forces(const Model& model, const State& state, const 
 
 namespace {
 
-// Whether the force that is largest in this direction, of the rods that are shown, is unique; of none it is.
+// Whether the force that is largest in this direction, of the rods that are shown, is unique; of none it is,
+// beside one that is not known it is not.
 double extreme_unique(const Diagnostics& d, const VectorXd& force, const std::vector<char>& unique,
                       double sign) {
   double most = -std::numeric_limits<double>::infinity();
@@ -128,7 +129,9 @@ double extreme_unique(const Diagnostics& d, const VectorXd& force, const std::ve
     if (d.shows(r)) most = std::max(most, sign * force[r]);
   const double close = std::isinf(most) ? 0.0 : 1e-9 * std::abs(most);  // equal ones differ by round-off
   for (Index r = 0; r < force.size(); ++r)
-    if (d.shows(r) && !(sign * force[r] < most - close) && !unique[static_cast<std::size_t>(r)]) return 0.0;
+    if (d.shows(r) && !(sign * force[r] < most - close) &&
+        (std::isnan(force[r]) || !unique[static_cast<std::size_t>(r)]))
+      return 0.0;
   return 1.0;
 }
 

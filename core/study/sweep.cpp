@@ -35,6 +35,7 @@ struct Said {
   std::string moved = {};  // as in Sweep, of one point
   std::string why = {};    // it has no answer
   std::vector<std::string> warnings = {};
+  std::optional<std::vector<std::string>> idle = {};  // what does nothing; none: it has no run
 };
 
 // One point; nothing where it was cancelled.
@@ -61,9 +62,12 @@ std::optional<std::vector<std::string>> run_point(const SweepPlan& plan, const P
       said.why = run.message;
     else
       said.warnings = warnings_of(run, diagnostics);
-    // What does nothing in one point may do something in others: that is told of axes.
+    // What does nothing in one point may do something in others.
+    said.idle.emplace();
     std::erase_if(said.warnings, [&](const std::string& text) {
-      return text.find("does nothing") != std::string::npos || text == said.moved;
+      const bool idle = text.find("does nothing") != std::string::npos;
+      if (idle) said.idle->push_back(text);
+      return idle || text == said.moved;
     });
     for (const RunMeasure& measure : plan.measures)
       row.push_back(exact_number(run.status == RunStatus::failed ? nan : measure.value(run, diagnostics)));
@@ -149,6 +153,7 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
   using Words = std::pair<std::size_t, std::string>;  // of the first of some points
   std::map<std::string, Words> moved, why;            // by the outcome
   std::map<std::size_t, std::vector<std::string>> warned;
+  std::optional<std::vector<std::string>> idle;  // in every point so far
   const auto keep = [](std::map<std::string, Words>& of, const std::string& outcome, Words words) {
     if (const auto [at, first] = of.try_emplace(outcome, words); !first && words < at->second)
       at->second = words;
@@ -174,6 +179,12 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
     if (!of_point.moved.empty()) keep(moved, "", {open[i], of_point.moved});
     if (!of_point.why.empty()) keep(why, outcome, {open[i], of_point.why});
     if (!of_point.warnings.empty()) warned.emplace(open[i], std::move(of_point.warnings));
+    if (of_point.idle && idle)
+      std::erase_if(*idle, [&](const std::string& text) {
+        return std::ranges::find(*of_point.idle, text) == of_point.idle->end();
+      });
+    else if (of_point.idle)
+      idle = std::move(of_point.idle);
     if (!hooks.team || hooks.team->holds(piece)) journal.append(std::move(*row));
     hooks.tell(static_cast<double>(++done) / static_cast<double>(open.size()));
   });
@@ -181,6 +192,8 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
   const auto text = [&](const Words& words) { return point_text(plan, words.first) + ": " + words.second; };
   for (const auto& [outcome, words] : moved) sweep.moved = text(words);
   for (const auto& [outcome, words] : why) sweep.why[outcome] = text(words);
+  for (const std::string& words : idle.value_or(std::vector<std::string>()))
+    sweep.warnings.push_back("at every point: " + words);
   if (!warned.empty())
     for (const std::string& words : warned.begin()->second)
       sweep.warnings.push_back(text({warned.begin()->first, words}));

@@ -67,8 +67,8 @@ struct Sweep {
   // What the first of the points that were computed now says of nodes moved to fit given lengths of rods;
   // empty: none says anything.
   std::string moved = {};
-  // What the first of the points that were computed now, and has an answer, is warned of, and how many are;
-  // empty: none is.
+  // What does nothing at all points that were computed now and have a run; what the first of those is warned
+  // of, and how many are. Empty: none is.
   std::vector<std::string> warnings = {};
   // By the outcome ("failed", "invalid"): the first of the points that were computed now, and why it has no
   // answer.

@@ -115,6 +115,19 @@ TEST_CASE("a parallelogram that starts flat opens its forces at the start alone"
   CHECK(d.at("axial_force_max_unique").values.back() == 1.0);
 }
 
+TEST_CASE("a largest force that is not known is not unique") {
+  // Rods in line would have to bear the weight across: the deployed pose has no forces.
+  const Simulation run = library_run("hoop6", {"structure.youngs_modulus=7e10", "structure.fold_angle=60",
+                                               "gravity.acceleration=[0,0,-1]", "solver.step=0.05"});
+  REQUIRE(run.status == RunStatus::deployed);
+  const Diagnostics d = diagnose(run);
+  for (const std::string which : {"axial_force_max", "axial_force_min"}) {
+    CHECK(std::isnan(d.at(which + "_N").values.back()));
+    CHECK(d.at(which + "_unique").values.back() == 0.0);
+    CHECK(d.at(which + "_unique").values.front() == 1.0);
+  }
+}
+
 TEST_CASE("the largest force names its rod, its time and whether it is unique") {
   const Simulation run = library_run("hoop6", {"structure.units=4", "solver.step=0.1"});
   const Diagnostics d = diagnose(run);

@@ -48,6 +48,39 @@ TEST_CASE("axes are ranges, log ranges or lists") {
     CHECK_THROWS_AS(parse_axis(bad), StudyError);
 }
 
+TEST_CASE("what does nothing at every point of a sweep is told, what does something at one is not") {
+  // No two rods meet at A; a weight is given back where there is one.
+  const auto text = std::make_shared<const std::string>(R"(
+structure.kind = "custom"
+structure.nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1, 0, 0]}]
+structure.rods = [{nodes = ["O", "A"], mass = 1}]
+[[forces]]
+kind = "joint_damping"
+nodes = ["A"]
+damping = 0.1
+[[forces]]
+kind = "offload"
+nodes = ["A"]
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+end_time = 0.1
+)");
+  const auto told = [&](const char* axis) {
+    SweepPlan plan{{"one.toml", {}, text, "."}, {parse_axis(axis)}, {}, {}};
+    plan.measures.push_back(find_measure("final:kinetic_energy_J"));
+    Journal journal({}, plan.columns(), plan.axes.size(), plan.number_columns());
+    const Sweep sweep = run_sweep(plan, journal, {});
+    CHECK(unanswered(plan, sweep) == 0);
+    return sweep.warnings;
+  };
+  const std::string damping =
+      "at every point: force \"joint_damping of A\" does nothing: no two rods meet at A";
+  CHECK(told("solver.end_time=0.1,0.2,0.3") == std::vector<std::string>{damping});
+  CHECK(told("gravity.acceleration[2]=-1,0") == std::vector<std::string>{damping});
+  CHECK(told("gravity.acceleration[2]=0,-1,-2") == std::vector<std::string>{damping});
+}
+
 TEST_CASE("a range of one is its beginning") {
   CHECK(parse_axis("a=2.5:7:1").numbers == std::vector<double>{2.5});
   CHECK(parse_axis("a=2.5:7:1:log").numbers == std::vector<double>{2.5});
