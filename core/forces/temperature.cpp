@@ -19,7 +19,8 @@ const std::vector<ParamSpec>& temperature_params() {
             "change", "K", 1.0, -infinity, infinity,
             "above the temperature at which the rods have their lengths, times the factor of the time"),
         vector_param("times", "s", {},
-                     "with values: the change over time, a smooth curve through the points"),
+                     "with values: the change over time, a smooth curve through the points, which goes "
+                     "beyond them beside a steep part: points there keep it close"),
         vector_param("values", "", {}, "factors of the change at the times"),
         text_param("table", "", "CSV file beside the scene, in place of times and values: t,value")};
   }();
