@@ -136,6 +136,13 @@ StateForces::Close StateForces::limit_behind(std::size_t i) const {
   return out;
 }
 
+// Whether two states have one pose, to rounding: those between tell no more of it.
+bool StateForces::rests(std::size_t i, std::size_t k) const {
+  constexpr double rounding = 1e-13;
+  const VectorXd &a = trajectory_.state(i).z, &b = trajectory_.state(k).z;
+  return (a - b).lpNorm<Eigen::Infinity>() <= rounding * a.lpNorm<Eigen::Infinity>();
+}
+
 // By the polynomial through three poses on either side, as near as they are in a thousandth of the doubt, or
 // farther where that says more; its error is what the outer ones change. Not through a pole: there what is
 // odd about the pose falls away from it, where the forces are smooth it grows. The last state before an event
@@ -149,6 +156,7 @@ void StateForces::interpolate(std::size_t i, Close& here) {
   const bool ends = limit.point.known, one_way = behind.empty(), at_end = one_way && !ends;
   const std::vector<std::size_t> before = beside(i, -1, one_way ? far_from_end : far);
   if (before.empty() || (at_end && before.size() <= far)) return;  // single states are no run's end
+  if (rests(i, before.back()) && rests(i, behind.empty() ? i : behind.back())) return;
   const double t = trajectory_.time(i);
   const auto both = [&](std::size_t first, std::size_t last) {
     return one_way ? t - trajectory_.time(first)

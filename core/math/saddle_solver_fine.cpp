@@ -149,7 +149,7 @@ void SaddleSolver::apply_finely(double* f, double* g, int columns) const {
 // 1e-4 of 1e9 where many rows of a ring depend on each other and it is 2e-14.
 void SaddleSolver::solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) const {
   constexpr int most_passes = 10;
-  constexpr double settled = 1e-12;  // multipliers, of the largest
+  constexpr double settled = 1e-10;  // multipliers, of the largest
   Fine& fine = *fine_;
   const auto place = [this](Index i) {
     return static_cast<std::size_t>(safe_.place[static_cast<std::size_t>(i)]);
@@ -186,7 +186,8 @@ void SaddleSolver::solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, 
       size = std::max(size, std::abs(now));
       change = std::max(change, std::abs(now - before[i]));
     }
-    if (pass > 0 && (change <= settled * size || !(change < 0.5 * last))) break;
+    // What is left falls as the change has fallen.
+    if (pass > 0 && (change * (change / last) <= settled * size || !(change < 0.5 * last))) break;
     last = change;
   }
   for (Index i = 0; i < n_; ++i) x[i] = static_cast<double>(fine.x[place(i)] * column_scale_[i]);
