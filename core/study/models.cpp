@@ -59,17 +59,34 @@ void undamp(const TomlTree& tree, const std::string& path, std::vector<std::stri
   }
 }
 
+// Keys of moduli that rods have by themselves.
+std::vector<std::string> own_moduli(const TomlTree& root) {
+  std::vector<std::string> out;
+  const TomlTree* structure = root.find("structure");
+  const TomlTree* rods = structure ? structure->find("rods") : nullptr;
+  for (std::size_t i = 0; rods && i < rods->items.size(); ++i) {
+    const TomlTree* modulus = rods->items[i].find("youngs_modulus");
+    if (modulus && !(modulus->kind == TomlTree::Kind::real && std::isinf(modulus->real)))
+      out.push_back("structure.rods[" + std::to_string(i) + "].youngs_modulus");
+  }
+  return out;
+}
+
 // Rods with a modulus share forces that rigid ones leave open. How they share depends on ratios alone.
 void add_modulus(const TomlTree& root, std::vector<ModelChoice>& out) {
   const TomlTree* structure = root.find("structure");
   const TomlTree* modulus = structure ? structure->find("youngs_modulus") : nullptr;
   if (!modulus) return;
-  const bool rigid = modulus->kind == TomlTree::Kind::real && std::isinf(modulus->real);
-  if (rigid)
+  const std::vector<std::string> own = own_moduli(root);
+  const bool rigid = modulus->kind == TomlTree::Kind::real && std::isinf(modulus->real) && own.empty();
+  if (rigid) {
     out.push_back({"forces shared by stiffness: E = 70 GPa", {"structure.youngs_modulus=7e10"}});
-  else
-    out.push_back({"rigid rods: forces of least norm",
-                   {"structure.rod_model=rigid", "structure.segments=1", "structure.youngs_modulus=inf"}});
+    return;
+  }
+  std::vector<std::string> changes{"structure.rod_model=rigid", "structure.segments=1",
+                                   "structure.youngs_modulus=inf"};
+  for (const std::string& key : own) changes.push_back(key + "=inf");
+  out.push_back({"rigid rods: forces of least norm", std::move(changes)});
 }
 
 // Rigid, quasi-static, elastic, bending: those that the scene does not have. Without a modulus, aluminium's.
@@ -77,7 +94,7 @@ void add_rod_models(const TomlTree& root, std::vector<ModelChoice>& out) {
   const std::string now = text_at(root, "structure", "rod_model");
   if (now.empty()) return;
   const TomlTree* modulus = root.find("structure")->find("youngs_modulus");
-  const bool endless = !modulus || std::isinf(modulus->real);
+  const bool endless = (!modulus || std::isinf(modulus->real)) && own_moduli(root).empty();
   const std::string known = endless ? ": E = 70 GPa" : "";
   const auto add = [&](const std::string& name, std::vector<std::string> changes) {
     if (endless) changes.emplace_back("structure.youngs_modulus=7e10");

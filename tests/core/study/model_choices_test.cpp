@@ -151,6 +151,36 @@ TEST_CASE("the choices of a scene are all that it did not make, each with the ch
             "0 g flight: neither weight nor offload: gravity.acceleration=[0,0,0] forces[6].enabled=false"});
 }
 
+TEST_CASE("rods that have moduli of their own keep them in models that give") {
+  const std::string rods = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], fixed = true},
+  {name = "C", position = [0.5, 0.5, 0], velocity = [0, 0, 1], mass = 1}]
+rods = [{nodes = ["A", "C"], mass = 0.1, youngs_modulus = 7e10, area = 1e-4},
+  {nodes = ["B", "C"], mass = 0.1, youngs_modulus = 2e11, area = 1e-4}]
+)";
+  Lines told;
+  for (const std::string& line : choices_of(source_of(rods)))
+    if (line.find("rods") != std::string::npos && line.find("mass") == std::string::npos)
+      told.push_back(line);
+  CHECK(told ==
+        Lines{"rigid rods: forces of least norm: structure.rod_model=rigid structure.segments=1 "
+              "structure.youngs_modulus=inf structure.rods[0].youngs_modulus=inf "
+              "structure.rods[1].youngs_modulus=inf",
+              "quasi-static rods: stretched by the rigid run's forces: structure.rod_model=quasi-static",
+              "elastic rods, with waves: structure.rod_model=elastic",
+              "bending rods: elastic, in 4 segments: structure.rod_model=elastic structure.segments=4"});
+  int runs = 0;
+  for (const MeasuredModel& model : compare_models(source_of(rods, {"solver.end_time=0.1"}), 1, {})) {
+    if (model.choice.name.find("rods") == std::string::npos) continue;
+    INFO(model.choice.name << ": " << model.message);
+    CHECK(model.outcome == "completed");
+    ++runs;
+  }
+  CHECK(runs >= 4);
+}
+
 TEST_CASE("a scene that chose otherwise is offered what it left") {
   const SceneSource other{find_scene("hoop6"),
                           {"solver.model=\"path\"", "solver.eliminate_linear=false", "solver.sparse=false",
