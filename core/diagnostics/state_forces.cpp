@@ -166,13 +166,25 @@ void StateForces::interpolate(std::size_t i, Close& here) {
   const double own = here.doubt.maxCoeff();
   constexpr double told = 0.1;  // less, and the poses may be too far apart for what happens between them
   constexpr double many = 10;   // times as much: all of these poses have round-off
+  const auto tells_more = [own](const Close& pose) {
+    return pose.point.known && (pose.doubt.size() == 0 || 1000 * pose.doubt.maxCoeff() < own);
+  };
+  // The farther, the less of the round-off: the first of ever doubled distances that tells more.
+  const double nearest = both(before.front(), one_way ? 0 : behind.front()) / 1024;
+  int first = 0, levels = 0;
+  while (std::ldexp(nearest, levels) <= 0.5 * most) ++levels;
+  for (int end = levels; first < end;) {
+    const int middle = (first + end) / 2;
+    if (tells_more(look_closely(i, trajectory_.state_at(t - std::ldexp(nearest, middle)))))
+      end = middle;
+    else
+      first = middle + 1;
+  }
   std::vector<Close> near;
   const auto look = [&](double apart) {
     for (const double side : {-apart, one_way ? -1.25 * apart : apart}) {
       near.push_back(look_closely(i, trajectory_.state_at(t + side)));
-      const Close& other = near.back();
-      if (!other.point.known || (other.doubt.size() > 0 && !(1000 * other.doubt.maxCoeff() < own)))
-        return false;
+      if (!tells_more(near.back())) return false;
     }
     return true;
   };
@@ -187,8 +199,8 @@ void StateForces::interpolate(std::size_t i, Close& here) {
     return (near[k].point.lambda - near[k + 1].point.lambda).lpNorm<Eigen::Infinity>();
   };
   double least = told * own;
-  for (double apart = both(before.front(), one_way ? 0 : behind.front()) / 1024; apart <= 0.5 * most;
-       apart *= 2) {
+  for (int level = first; level < levels; ++level) {
+    const double apart = std::ldexp(nearest, level);
     near.clear();
     if (!look(apart)) continue;
     if (!look(1.5 * apart) || !look(2 * apart) || (!one_way && odd(0) > 0.75 * odd(4) + 0.01 * own)) return;
