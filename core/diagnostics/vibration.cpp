@@ -89,7 +89,7 @@ class AtPose {
     const VectorXd given = rows_of(model, known, G.rows());
     VectorXd lambda = rest.lambda;
     lambda.setZero(G.rows());
-    if (index1.evaluate(rest, acceleration, lambda)) {
+    if (index1.evaluate_at_rest(rest, acceleration, lambda)) {
       lambda -= given;
       ElasticSharing(model, all).share(rest.t, q, false, lambda);
       lambda += given;

@@ -63,6 +63,13 @@ bool Index1::evaluate(const State& state, MutVec acceleration, MutVec lambda) {
   return assemble(state.t, state.z, state.w, state.tension) && solve(state.t, state.w, acceleration, lambda);
 }
 
+bool Index1::evaluate_at_rest(State state, MutVec acceleration, MutVec lambda) {
+  state.w.setZero(state.z.size());
+  if (!assemble(state.t, state.z, state.w, state.tension)) return false;
+  bias_.setZero();
+  return solve(state.t, state.w, acceleration, lambda);
+}
+
 bool Index1::solve(double t, const ConstVec& w, MutVec acceleration, MutVec lambda) {
   saddle_.weakest_pivot(weak_);
   if (alpha_ > 0) {

@@ -31,6 +31,8 @@ class Index1 {
   // The same at a state. What rods that give pull with is what the state says, where its step did not resolve
   // them and their lengths do not tell.
   bool evaluate(const State& state, MutVec acceleration, MutVec lambda);
+  // The same at rest in the state's pose, for good: G a = 0, whatever drives and warming do then.
+  bool evaluate_at_rest(State state, MutVec acceleration, MutVec lambda);
   // Where G has lost rank: the multipliers that the equations determine, next to those given, of which the
   // rest is kept; for each of `lambdas`. Directions of singular values below some 1e-7 count as lost.
   bool correct(const State& state, std::span<VectorXd> lambdas);

@@ -58,8 +58,8 @@ struct Rod {
   double rest_length(double t) const { return natural_length() * (1 + warmed(t)); }
   double rest_rate(double t) const { return natural_length() * warmed(t, 1); }  // its derivative [m/s]
   double natural_length() const { return free_length > 0 ? free_length : length; }
-  // Between the pins at which it, or the rod that it is a part of, may turn [m].
-  double pinned_length() const { return parts * length; }
+  // Between the pins at which it, or the rod that it is a part of, may turn, without force [m].
+  double pinned_length() const { return parts * natural_length(); }
   bool elastic() const { return area > 0 && std::isfinite(youngs_modulus); }
   // Stretch per axial force, of all that it stands for together; 0: rigid [m/N].
   double compliance() const {

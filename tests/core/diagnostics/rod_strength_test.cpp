@@ -90,6 +90,23 @@ TEST_CASE("Euler's load and the stress of rods of every section") {
   }
 }
 
+TEST_CASE("Euler's load is that of a rod's own length, not of the distance at which it starts") {
+  // N = E A (0.9 - 1) / 1 = -100 N over pi^2 E I / (1 m)^2.
+  const Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+rod_model = "elastic"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [0.9, 0, 0], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 0.1, youngs_modulus = 1e7, area = 1e-4, second_moment = 1e-10, free_length = 1.0}]
+[solver]
+end_time = 0.01
+step = 0.001
+)");
+  const Diagnostics d = diagnose(run);
+  CHECK(d.axial_force(0, 0) == Approx(-100).epsilon(1e-12));
+  CHECK(d.at("buckling_ratio_max").values.front() == Approx(100 / (pi * pi * 1e7 * 1e-10)).epsilon(1e-12));
+}
+
 TEST_CASE("a rod's own second moment, modulus and strength go before those of all rods") {
   const std::string scene = strut_and_tie("youngs_modulus = 2.1e11\nstrength = 2.4e8\n");
   const std::string own = "area = 3.1e-4\nsecond_moment = 8e-9\nyoungs_modulus = 7e10\nstrength = 1e8\n";
