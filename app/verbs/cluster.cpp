@@ -52,13 +52,19 @@ std::string with(std::vector<std::string> words, const std::vector<std::string>&
   return as_typed(words);
 }
 
+// In lines that begin as a comment does, wherever its lines end.
+std::string commented(const std::string& text) {
+  std::string out = "# ";
+  for (const char c : text) out += c == '\n' ? std::string("\n# ") : std::string(1, c);
+  return out;
+}
+
 std::string slurm(const Arguments& a) {
   const std::string jobs = std::to_string(a.study.jobs);
   return "#!/bin/sh\n"
-         "# sbatch this file; after a kill, sbatch it again: points that are finished stay.\n"
-         "# When all tasks are done: " +
-         with(whole_sweep(a), {"--merge", a.output}) + "\n#SBATCH --job-name=unfurl\n#SBATCH --array=1-" +
-         jobs +
+         "# sbatch this file; after a kill, sbatch it again: points that are finished stay.\n" +
+         commented("When all tasks are done: " + with(whole_sweep(a), {"--merge", a.output})) +
+         "\n#SBATCH --job-name=unfurl\n#SBATCH --array=1-" + jobs +
          "\n#SBATCH --cpus-per-task=1\n#SBATCH --requeue\n"
          "exec " +
          with(whole_sweep(a), {"--shard", "auto/" + jobs, "--threads", "1", "--quiet"}) + "\n";
@@ -81,6 +87,7 @@ std::string snakemake(const Arguments& a) {
       out += c == '"' || c == '\\' ? std::string("\\") + c
              : c == '{'            ? "{{"
              : c == '}'            ? "}}"
+             : c == '\n'           ? "\\n"
                                    : std::string(1, c);
     return out;
   };
