@@ -187,7 +187,7 @@ class StretchedRun {
   // polynomial through six poses on the way to it, at the distance at which the last of them changes it
   // least. That of the state before where none tells, as beside forces that have no bound.
   VectorXd limit(std::size_t i) {
-    constexpr int points = 6;
+    constexpr std::size_t points = 6;
     constexpr double sum_of_weights = 63, told = 0.1;  // of the displacement
     const VectorXd& lambda = trajectory_.state(i).lambda;
     VectorXd best = u_[i - 1];
@@ -196,12 +196,14 @@ class StretchedRun {
     while (first > 0 && i - first < 64 && joined(first - 1, first)) --first;
     const double end = trajectory_.time(i), step = end - trajectory_.time(i - 1);
     double least = told * size(i - 1);
-    for (double apart = step / 256; points * apart < end - trajectory_.time(first); apart *= 2) {
+    for (double apart = step / 256; static_cast<double>(points) * apart < end - trajectory_.time(first);
+         apart *= 2) {
       std::vector<VectorXd> near(points);
       double worst = 0;
-      for (int k = 0; k < points; ++k) {
+      for (std::size_t k = 0; k < points; ++k) {
         double doubt = 0;
-        if (!at(i).closely(trajectory_.state_at(end - apart * (k + 1)), near[k], doubt)) return best;
+        if (!at(i).closely(trajectory_.state_at(end - apart * static_cast<double>(k + 1)), near[k], doubt))
+          return best;
         worst = std::max(worst, doubt);
       }
       const auto time = [&](std::size_t k) { return -static_cast<double>(k + 1); };

@@ -4,6 +4,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -147,6 +148,22 @@ TEST_CASE("a pipe in the place of a file is refused at once") {
   CHECK(run_program({"run", "pendulum", "-o", dir / "out"}).code == 5);
   REQUIRE(::mkfifo((dir / "out/.unfurl").c_str(), 0600) == 0);
   CHECK(run_program({"run", "pendulum", "--force", "-o", dir / "out"}).code == 5);
+}
+
+TEST_CASE("a line that ends within an option ends no comment and no string of a job script") {
+  const auto script = [](const char* name, const std::string& title) {
+    return run_program({"sweep", "pendulum", "--vary", "structure.angle=10,20", "--measure", "end_time",
+                        "--set", "title=\"\"\"" + title + "\"\"\"", "-o", "D", "--script", name, "--jobs",
+                        "5"})
+        .out;
+  };
+  const std::string slurm = script("slurm", "a\nb");
+  REQUIRE(slurm.find("\nexec ") != std::string::npos);
+  for (std::size_t at = 0; at < slurm.find("\nexec "); at = slurm.find('\n', at) + 1) CHECK(slurm[at] == '#');
+  CHECK(slurm.find("a\nb") != std::string::npos);  // of the command itself
+  const std::string one = script("snakemake", "a b"), two = script("snakemake", "a\nb");
+  CHECK(std::ranges::count(one, '\n') == std::ranges::count(two, '\n'));
+  CHECK(two.find("a\\nb") != std::string::npos);
 }
 
 }  // namespace unfurl::printable_output_test

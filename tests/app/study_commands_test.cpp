@@ -191,22 +191,6 @@ TEST_CASE("job scripts repeat the sweep with a share for every task and end in a
         "unfurl: no script for 'slrm'; did you mean 'slurm'?\n");
 }
 
-TEST_CASE("a line that ends within an option ends no comment and no string of a job script") {
-  const auto script = [](const char* name, const std::string& title) {
-    return run_program({"sweep", "pendulum", "--vary", "structure.angle=10,20", "--measure", "end_time",
-                        "--set", "title=\"\"\"" + title + "\"\"\"", "-o", "D", "--script", name, "--jobs",
-                        "5"})
-        .out;
-  };
-  const std::string slurm = script("slurm", "a\nb");
-  REQUIRE(slurm.find("\nexec ") != std::string::npos);
-  for (std::size_t at = 0; at < slurm.find("\nexec "); at = slurm.find('\n', at) + 1) CHECK(slurm[at] == '#');
-  CHECK(slurm.find("a\nb") != std::string::npos);  // of the command itself
-  const std::string one = script("snakemake", "a b"), two = script("snakemake", "a\nb");
-  CHECK(std::ranges::count(one, '\n') == std::ranges::count(two, '\n'));
-  CHECK(two.find("a\\nb") != std::string::npos);
-}
-
 TEST_CASE("a sweep says how many of its points have no answer") {
   const ScratchDirectory dir;
   const ProgramResult r = run_program({"sweep", "hoop6_sector", "--vary", "structure.units=5,7", "--measure",
