@@ -90,13 +90,16 @@ std::vector<TimeEdge> time_edges(const Structure& structure, double step) {
       }
     }
   std::sort(edges.begin(), edges.end(), [](const TimeEdge& a, const TimeEdge& b) { return a.t < b.t; });
-  // Times that differ by their rounding are one; it jumps if one of them does.
+  // Times that differ by their rounding are one; it jumps if one of them does, at the last that does: there
+  // all of them have jumped, and before_jump() none.
   std::vector<TimeEdge> distinct;
   for (const TimeEdge& edge : edges) {
-    if (distinct.empty() || edge.t - distinct.back().t > 4e-16 * std::abs(edge.t))
+    if (distinct.empty() || edge.t - distinct.back().t > 4e-16 * std::abs(edge.t)) {
       distinct.push_back(edge);
-    else
-      distinct.back().jump = distinct.back().jump || edge.jump, distinct.back().impact |= edge.impact;
+    } else {
+      if (edge.jump || edge.impact) distinct.back().t = edge.t;
+      distinct.back().jump |= edge.jump, distinct.back().impact |= edge.impact;
+    }
   }
   return distinct;
 }

@@ -92,17 +92,32 @@ bool is_stiffness(const std::string& name, const TomlTree& value) {
   return value.kind == TomlTree::Kind::real && value.real > 0 && std::isfinite(value.real);
 }
 
-// The first of the scene, in an entry that is enabled; its dotted key.
-std::string stiffness_key(const TomlTree& tree, const std::string& path) {
+// Whether the scene, with another number there, says that the key or its entry does nothing.
+bool does_nothing(const SceneSource& source, const std::string& key) {
+  const std::string entry = key.substr(0, key.rfind('.'));
+  try {
+    const Scene scene = source.read({key + "=2"});
+    const auto of_it = [&](const std::string& at) { return at == key || at == entry; };
+    for (const SceneProblem& warning : scene.warnings)
+      if (of_it(warning.key) && warning.message.starts_with("does nothing")) return true;
+    for (const std::string& note : build_structure(scene).notes)
+      if (note.starts_with(entry + ": does nothing") || note.starts_with(key + ": does nothing")) return true;
+  } catch (const SceneError&) {
+  }
+  return false;
+}
+
+// The first of the scene that does something, in an entry that is enabled; its dotted key.
+std::string stiffness_key(const SceneSource& source, const TomlTree& tree, const std::string& path) {
   const TomlTree* enabled = tree.find("enabled");
   if (enabled && enabled->kind == TomlTree::Kind::boolean && !enabled->boolean) return {};
   for (const auto& [name, value] : tree.entries) {
     const std::string key = path.empty() ? name : path + "." + name;
-    if (is_stiffness(name, value)) return key;
+    if (is_stiffness(name, value) && !does_nothing(source, key)) return key;
     if (value.kind == TomlTree::Kind::table)
-      if (std::string found = stiffness_key(value, key); !found.empty()) return found;
+      if (std::string found = stiffness_key(source, value, key); !found.empty()) return found;
     for (std::size_t i = 0; i < value.items.size(); ++i)
-      if (std::string found = stiffness_key(value.items[i], key + "[" + std::to_string(i) + "]");
+      if (std::string found = stiffness_key(source, value.items[i], key + "[" + std::to_string(i) + "]");
           !found.empty())
         return found;
   }
@@ -111,7 +126,7 @@ std::string stiffness_key(const TomlTree& tree, const std::string& path) {
 
 std::optional<Extreme> stiffness(const SceneSource& source) {
   const Scene scene = source.read();
-  const std::string key = stiffness_key(parse_toml(scene_text(scene), scene.name), "");
+  const std::string key = stiffness_key(source, parse_toml(scene_text(scene), scene.name), "");
   if (key.empty()) return std::nullopt;
   return by_key(source, "stiffness", key, {1, 1e2, 1e4, 1e6, 1e8, 1e10}, key,
                 [](double value) { return value; });

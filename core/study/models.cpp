@@ -140,7 +140,8 @@ std::vector<std::pair<Index, Index>> common_nodes(const Trajectory& a, const Tra
   return common;
 }
 
-// Of those nodes, at every time that both runs have: grids that meet do so within round-off of their times.
+// Of those nodes, at every time of the first run that the other reaches: from its state where one is within
+// round-off of that, else from within its step.
 double difference(const Trajectory& a, const Trajectory& b, const SolverOptions& options) {
   const auto common = common_nodes(a, b);
   if (common.empty()) return nan;
@@ -149,8 +150,8 @@ double difference(const Trajectory& a, const Trajectory& b, const SolverOptions&
   for (std::size_t i = 0, k = 0; i < a.size(); ++i) {
     while (k < b.size() && b.time(k) < a.time(i) - near) ++k;
     if (k == b.size()) break;
-    if (!(b.time(k) < a.time(i) + near)) continue;
-    const VectorXd x = a.positions(i), y = b.positions(k);
+    const VectorXd x = a.positions(i),
+                   y = b.time(k) < a.time(i) + near ? b.positions(k) : b.positions_at(a.time(i));
     for (const auto& [at, there] : common)
       largest = std::max(largest, (x.segment<3>(at) - y.segment<3>(there)).norm());
   }

@@ -7,6 +7,7 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/scene/build.hpp"
 #include "core/simulate/singular_poses.hpp"
+#include "core/study/reference.hpp"
 #include "core/study/table.hpp"
 #include "core/study/tolerance.hpp"
 
@@ -23,6 +24,7 @@ double SceneObjective::at(double x) {
   try {
     const Scene scene = source_.read({key_ + "=" + exact_number(x)});
     Simulation run = simulate_as_asked(build_model(scene), study_solver(scene, {key_}, {measure_}), hooks_);
+    if (run.status == RunStatus::stopped) throw Cancelled();
     if (may_have_no_bound(measure_.name)) record_singular_poses(run);
     const Diagnostics diagnostics = judge(run);
     if (run.status == RunStatus::failed) return none;

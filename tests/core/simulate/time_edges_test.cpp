@@ -6,6 +6,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/path/path_run.hpp"
 #include "core/structure/time_edges.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -14,7 +15,7 @@ namespace time_edges_test {
 
 namespace {
 
-using testing::end_positions, testing::run_scene;
+using testing::end_positions, testing::number, testing::run_scene;
 
 // A free mass of 1.5 kg at 0.3 m/s along x; what pushes it is added.
 const std::string mass = R"(
@@ -81,6 +82,44 @@ times = )" + times;
           CHECK(end_positions(run)[0] == Approx(x).epsilon(1e-11));
         }
   }
+}
+
+// 0.7 + 0.1 is one rounding below 0.8, 0.1 + 0.2 one above 0.3: 1 kg under 100 N from there on, and beside it
+// what jumps or ends a ramp at the same time.
+TEST_CASE("what jumps as another thing ends, but for rounding, jumps for every method") {
+  const auto scene = [](double at, const std::string& beside) {
+    return "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], mass = 1}, {name = "
+           "'B', "
+           "position = [0, 1, 0], mass = 1}]\n[[structure.constraints]]\nkind = 'line'\nnodes = "
+           "['A']\ndirection = "
+           "[1, 0, 0]\n[[structure.constraints]]\nkind = 'line'\nnodes = ['B']\ndirection = [1, 0, "
+           "0]\n[[forces]]\n"
+           "kind = 'load_over_time'\nnodes = ['A']\nforce = [100, 0, 0]\ntimes = [" +
+           number(at) + ", " + number(at) + "]\nvalues = [0, 1]\n" + beside +
+           "[solver]\nstep = 0.01\nend_time = 1\n";
+  };
+  const std::string drive = "[[constraints]]\nkind = 'coordinate'\nnodes = ['B']\ndirection = [1, 0, 0]\n";
+  const auto load = [](double at) {
+    return "[[forces]]\nkind = 'load_over_time'\nnodes = ['B']\nforce = [1, 0, 0]\ntimes = [" + number(at) +
+           ", " + number(at) + "]\nvalues = [0, 1]\n";
+  };
+  for (const auto& [at, beside] :
+       {std::pair{0.8, drive + "motion = 'smooth'\nto = 0.5\nstart = 0.7\nduration = 0.1\n"},
+        {0.8, drive + "motion = 'rate'\nrate = 0.5\nstart = 0.7\nramp = 0.1\n"},
+        {0.3, load(0.1 + 0.2)},
+        {0.1 + 0.2, load(0.3)},
+        {0.3, drive + "motion = 'smooth'\nto = 0.5\nstart = 0.2\nduration = 0.1\n"},
+        {0.7 + 0.1, drive + "motion = 'rate'\nrate = 0.5\nstart = 0.8\n"}})
+    for (const char* method : {"dvm", "rk4", "rk4_projected", "rk4_baumgarte", "generalized_alpha"}) {
+      INFO(at << " " << method << "\n" << beside);
+      const Simulation run = run_scene(scene(at, beside), {std::string("solver.method=") + method});
+      REQUIRE(run.status == RunStatus::completed);
+      const double after = 1 - at;
+      // Exact for a load that is constant; generalized_alpha: to order 2 on a parabola.
+      CHECK(run.trajectory.node_velocities(run.trajectory.size() - 1)[0] ==
+            Approx(100 * after).epsilon(1e-9));
+      CHECK(end_positions(run)[0] == Approx(50 * after * after).epsilon(1e-9));
+    }
 }
 
 TEST_CASE("what jumps where the run ends has no part in its last step, with any method and on the path") {

@@ -153,6 +153,22 @@ TEST_CASE("the stiffness that is driven is one that acts") {
   CHECK(names_of(extremes_of(none)) == Names{"mass_ratio", "force"});
 }
 
+TEST_CASE("a stiffness that means nothing in the scene is not the one that is driven") {
+  const std::string latch =
+      "[structure]\nkind = 'hoop'\n[[forces]]\nkind = 'latch'\nstiffness = 1000\n[[forces]]\nkind = "
+      "'torsion_spring'\nfold_angle = true\nstiffness = 10\n[solver]\nend_time = 0.5\nstep = 0.02\n";
+  CHECK(extremes_of(source_of(latch, {})).at("stiffness").label == "forces[1].stiffness");
+  CHECK(extremes_of(source_of(latch, {"solver.at_deployed=latch"})).at("stiffness").label ==
+        "forces[0].stiffness");
+  const auto reflector = [](const char* nets) {
+    const auto all = extremes_of({find_scene("mesh_reflector"), {std::string("structure.nets=") + nets}});
+    const auto found = all.find("stiffness");
+    return found == all.end() ? std::string() : found->second.label;
+  };
+  CHECK(reflector("true") == "structure.net_stiffness");
+  CHECK(reflector("false") != "structure.net_stiffness");
+}
+
 TEST_CASE("an atlas has the scene's own steps in it, and long runs where nothing deploys") {
   const auto steps_of = [](const char* end_time, const char* step) {
     const StressPlan plan = plan_stress(

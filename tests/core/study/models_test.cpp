@@ -185,6 +185,20 @@ TEST_CASE("models are compared at equal times however short the steps are") {
   CHECK(compared >= 2);
 }
 
+// Steps that follow the motion end at times of their own.
+TEST_CASE("models are compared over the whole motion whatever their steps are") {
+  const auto lumped = [](const char* adaptive) {
+    for (const MeasuredModel& m : compare_models({find_scene("four_bar"), {adaptive}}, 1, {}))
+      if (m.choice.name.starts_with("lumped mass")) return m;
+    FAIL("no such model");
+    throw std::logic_error("unreachable");
+  };
+  const MeasuredModel equal = lumped("solver.adaptive=false"), own = lumped("solver.adaptive=true");
+  CHECK(own.difference >= own.tip_difference);
+  // The largest of smooth distances at times that are a step apart at most.
+  CHECK(own.difference == Approx(equal.difference).epsilon(0.02));
+}
+
 // The rim is in both; what hangs slack in it moves it by its mass: little in 0.02 s of a drive that begins
 // over 2 s.
 TEST_CASE("a model without some of the nodes is compared by those that it has") {

@@ -6,6 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "core/study/reference.hpp"
+
 using namespace unfurl;
 
 namespace {
@@ -63,4 +65,13 @@ TEST_CASE("a run's warnings are kept by the value that it was of") {
   for (const double tolerance : {1e-8, 1e-17}) CHECK(peak.at(tolerance) > 0);
   CHECK(peak.warnings(1e-8).empty());
   CHECK_FALSE(peak.warnings(1e-17).empty());
+}
+
+TEST_CASE("a run that was stopped has no value") {
+  SimulationHooks hooks;
+  int asked = 0;
+  hooks.cancelled = [&asked] { return ++asked > 3; };
+  SceneObjective peak({"one.toml", {}, std::make_shared<const std::string>(bob), "."},
+                      "structure.nodes[B].mass", find_measure("peak_tension"), hooks);
+  CHECK_THROWS_AS(peak.at(2), Cancelled);
 }
