@@ -167,10 +167,10 @@ def test_sweep_and_solve_agree_with_single_runs():
 
 def test_what_is_solved_for_tells_what_its_run_is_warned_of():
     square = unfurl.Structure([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2], [1, 3]], fixed=[0],
-                              gravity=(0, 0, -10), set={"solver.end_time": 0.1, "solver.step": 0.01})
+                              gravity=(0, -10, 0), set={"solver.end_time": 0.1, "solver.step": 0.01})
     with pytest.warns(RuntimeWarning, match="peak_rod_force is not unique there"):  # both diagonals
-        square.solve("gravity.acceleration[2]", peak_rod_force=30)
-    bob = unfurl.Structure([[0, 0], [1, 0]], [[0, 1]], fixed=[0], gravity=(0, 0, -10), set={"solver.end_time": 1, "solver.stages": 5})
+        square.solve("gravity.acceleration[1]", peak_rod_force=30)
+    bob = unfurl.Structure([[0, 0], [1, 0]], [[0, 1]], fixed=[0], gravity=(0, -10, 0), set={"solver.end_time": 1, "solver.stages": 5})
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         # A rod let go level passes the bottom at 3 g / l; the mean of its length is pulled by 3/2 m g.

@@ -71,7 +71,7 @@ TEST_CASE("rods are cut into equal parts that bend, and the others stay what the
     CHECK(part.multiplicity == 2);
     CHECK(part.parts == static_cast<int>(parts[i].share));
     CHECK(part.whole == (parts[i].share > 1 ? rod.name : ""));
-    CHECK(part.pinned_length() == Approx(rod.length));
+    CHECK(part.pinned_length() == Approx(rod.natural_length()));
     const RodCopy& shown = cut.rod_copies[i];
     CHECK(shown.name == parts[i].name);
     CHECK(shown.a == parts[i].a);
