@@ -199,8 +199,9 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
   const auto text = [&](const Words& words) { return point_text(plan, words.first) + ": " + words.second; };
   for (const auto& [outcome, words] : moved) sweep.moved = text(words);
   for (const auto& [outcome, words] : why) sweep.why[outcome] = text(words);
-  const std::string where =
-      done == plan.points() ? "every point" : std::to_string(done) + " points computed now";
+  const std::string where = done == plan.points() ? "every point"
+                            : done == 1           ? "the one point computed now"
+                                                  : "all " + std::to_string(done) + " points computed now";
   for (const std::string& words : idle.value_or(std::vector<std::string>()))
     sweep.warnings.push_back("at " + where + ": " + words);
   if (!warned.empty())

@@ -60,6 +60,16 @@ Windows windows_of(const Scene& scene, std::size_t states) {
   return out;
 }
 
+// As a run finds it that goes on from its checkpoint.
+RunDigest behind_checkpoint(RunDigest& digest, const Scene& scene) {
+  Archive out;
+  digest.archive(out);
+  Archive in(out.bytes());
+  RunDigest again(build_model(scene), scene.solver);
+  again.archive(in);
+  return again;
+}
+
 }  // namespace
 
 TEST_CASE("energy lost in impacts is a column where impacts can happen, whether they do or not") {
@@ -226,12 +236,7 @@ TEST_CASE("a long run's rows and summary are those of the same run seen whole, a
       as_whole(digest.add(part.run, part.first, part.last), part.first, part.last);
       digest.settle();
       if (k % 2) continue;
-      Archive out;
-      digest.archive(out);
-      Archive in(out.bytes());
-      RunDigest again(model, scene.solver);
-      again.archive(in);
-      digest = std::move(again);
+      digest = behind_checkpoint(digest, scene);
     }
     as_whole(digest.add(w.rest, w.first, w.rest.trajectory.size()), w.first, w.rest.trajectory.size());
     CHECK(row == rows.t.size());
@@ -288,12 +293,7 @@ TEST_CASE("that forces have no bound in the deployed pose is told of a long run 
   for (Stepper::Window& part : w.parts) {
     digest.add(part.run, part.first, part.last);
     digest.settle();
-    Archive out;
-    digest.archive(out);
-    Archive in(out.bytes());
-    RunDigest again(model, scene.solver);
-    again.archive(in);
-    digest = std::move(again);
+    digest = behind_checkpoint(digest, scene);
   }
   digest.add(w.rest, w.first, w.rest.trajectory.size());
   const Digest whole = digest.whole(w.rest);
@@ -318,12 +318,7 @@ TEST_CASE("that a force has no bound on the way is told of a long run as of a sh
            warnings_of(digest.whole(part.run).run, digest.whole(part.run).diagnostics))
         told += text.find("grows without bound towards a singular pose") != std::string::npos ? 1 : 0;
       digest.settle();
-      Archive out;
-      digest.archive(out);
-      Archive in(out.bytes());
-      RunDigest again(model, scene.solver);
-      again.archive(in);
-      digest = std::move(again);
+      digest = behind_checkpoint(digest, scene);
     }
     digest.add(w.rest, w.first, w.rest.trajectory.size());
     CHECK(told >= w.parts.size() / 2);  // from the first such pose on
