@@ -110,6 +110,7 @@ StudySession::StudySession(const Arguments& arguments, std::string task, const s
 
 void StudySession::begin(const std::string& identity) {
   std::error_code error;
+  if (shard()) Journal::require_free(journal());
   if (arguments_.force && arguments_.join)
     throw UsageError("--force could remove what other workers of the --join write; use another directory");
   if (arguments_.force && output_.lock().unknown())

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/study/journal.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 
@@ -10,6 +14,38 @@
 
 namespace unfurl {
 
+namespace {
+
+// Throws FileError where somebody else has the lock. Where the file system knows no locks nobody can tell.
+void take_lock(int file, const std::filesystem::path& path) {
+  if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw FileError(path,
+                    "another unfurl is adding results to it; wait until it has finished, or use another -o");
+}
+
+// Holds the lock of a file that may be there; its name may lead to another one afterwards.
+class LockOfFile {
+ public:
+  explicit LockOfFile(const std::filesystem::path& path) : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    try {
+      if (file_ >= 0) take_lock(file_, path);
+    } catch (...) {
+      ::close(file_);
+      throw;
+    }
+  }
+  ~LockOfFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+  LockOfFile(const LockOfFile&) = delete;
+  LockOfFile& operator=(const LockOfFile&) = delete;
+
+ private:
+  int file_;
+};
+
+}  // namespace
+
 Journal::Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys,
                  std::vector<std::size_t> numbers, std::function<bool(const Row&)> finished)
     : path_(std::move(path)),
@@ -18,12 +54,23 @@ Journal::Journal(std::filesystem::path path, std::vector<std::string> columns, s
       numbers_(std::move(numbers)),
       finished_(std::move(finished)) {
   if (path_.empty()) return;
+  const LockOfFile earlier(path_);
   take_in(path_);
   std::string text = csv_line(columns_);
   for (const auto& [key, row] : rows_) text += csv_line(row);
   write_file_atomically(path_, text);  // without what was torn
-  file_ = std::fopen(path_.c_str(), "ab");
+  file_ = std::fopen(path_.c_str(), "abe");
   if (!file_) throw FileError(path_, errno);
+  try {
+    take_lock(::fileno(file_), path_);
+  } catch (...) {
+    std::fclose(file_);
+    throw;
+  }
+}
+
+void Journal::require_free(const std::filesystem::path& path) {
+  const LockOfFile now(path);
 }
 
 Journal::~Journal() {

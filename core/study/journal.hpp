@@ -24,12 +24,16 @@ class Journal {
  public:
   using Row = std::vector<std::string>;
   // Reads what is there; a row whose cells in the columns `numbers` (indices) are not all numbers, or that
-  // `finished` does not take, is no result. Throws JournalMismatch where its columns are others, FileError.
+  // `finished` does not take, is no result. Throws JournalMismatch where its columns are others, FileError,
+  // also where another journal writes to the file: one of them would lose what it has computed.
   Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys,
           std::vector<std::size_t> numbers = {}, std::function<bool(const Row&)> finished = {});
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
+
+  // Throws FileError where a journal of another process writes to this file.
+  static void require_free(const std::filesystem::path& path);
 
   const std::vector<std::string>* find(const std::vector<std::string>& key) const;
   void append(std::vector<std::string> row);  // throws FileError

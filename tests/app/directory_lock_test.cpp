@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/export/atomic_file.hpp"
+#include "core/study/journal.hpp"
 #include "tests/app/run_program.hpp"
 
 namespace unfurl::directory_lock_test {
@@ -52,6 +53,31 @@ TEST_CASE("verbs leave a directory alone where another is at work, whatever --fo
   }
   for (const auto& entry : std::filesystem::directory_iterator(out))
     CHECK(entry.path().filename() == ".unfurl");  // nothing but the mark that it is ours
+}
+
+TEST_CASE("a share of a sweep is computed by one program, and --force does not take it from that") {
+  const ScratchDirectory dir;
+  const std::string out = dir / "out", points = out + "/sweep_1_of_2.csv";
+  std::vector<std::string> words{"sweep",     "pendulum", "--vary",  "solver.step=0.05,0.1",
+                                 "--measure", "energy",   "--set",   "solver.end_time=0.2",
+                                 "--shard",   "1/2",      "--quiet", "-o",
+                                 out};
+  REQUIRE(run_program(words).code == 0);
+  const std::string right = file_text(points);
+  {
+    const Journal at_work(points, {"solver.step", "outcome", "energy_J"}, 1);
+    for (int twice = 0; twice < 2; ++twice) {
+      const ProgramResult r = run_program(words);
+      CHECK(r.code == 5);
+      CHECK(r.err ==
+            "unfurl: " + points +
+                ": another unfurl is adding results to it; wait until it has finished, or use another -o\n");
+      words.push_back("--force");
+    }
+    CHECK(file_text(points) == right);
+  }
+  CHECK(run_program(words).code == 0);
+  CHECK(file_text(points) == right);
 }
 
 TEST_CASE("who draws the same film may join, who draws another may not") {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/export/atomic_file.hpp"
 #include "core/study/journal.hpp"
 
 using namespace unfurl;
@@ -40,10 +41,27 @@ TEST_CASE("a line that a kill left torn is dropped") {
   const File file;
   { Journal(file.path, {"n", "value"}, 1).append({"1", "0.5"}); }
   std::ofstream(file.path, std::ios::app) << "2,0.2";  // no line break
-  Journal journal(file.path, {"n", "value"}, 1);
-  CHECK(journal.size() == 1);
-  journal.append({"2", "0.25"});
+  {
+    Journal journal(file.path, {"n", "value"}, 1);
+    CHECK(journal.size() == 1);
+    journal.append({"2", "0.25"});
+  }
   CHECK((*Journal(file.path, {"n", "value"}, 1).find({"2"}))[1] == "0.25");
+}
+
+// The second of two would begin with the rows that it finds, under the file's name, and the first one would
+// go on with a file that has none.
+TEST_CASE("a journal that is being written is not opened by another") {
+  const File file;
+  {
+    Journal first(file.path, {"n", "value"}, 1);
+    first.append({"1", "0.5"});
+    CHECK_THROWS_AS(Journal(file.path, {"n", "value"}, 1), FileError);
+    CHECK_THROWS_AS(Journal::require_free(file.path), FileError);
+    first.append({"2", "0.25"});
+  }
+  Journal::require_free(file.path);
+  CHECK(Journal(file.path, {"n", "value"}, 1).size() == 2);
 }
 
 TEST_CASE("rows of another length are no results") {

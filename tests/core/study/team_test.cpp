@@ -147,7 +147,8 @@ TEST_CASE("the sites of an atlas that another worker is at are left to it, and t
   CHECK(all.complete);
   CHECK(all.cells.size() == 4);
   CHECK(own->find({"force", "1e+06", plan.settings[0].name, "32"}) != nullptr);
-  Journal in_file(team.journal(), stress_columns(), stress_key_columns);
+  Journal in_file({}, stress_columns(), stress_key_columns);
+  in_file.take_in(team.journal());
   CHECK(in_file.size() == 2);  // theirs came from their file
 }
 
