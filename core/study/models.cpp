@@ -20,6 +20,7 @@
 #include "core/scene/toml_tree.hpp"
 #include "core/scene/write.hpp"
 #include "core/simulate/simulation.hpp"
+#include "core/simulate/singular_poses.hpp"
 #include "core/study/measured_run.hpp"
 #include "core/study/tolerance.hpp"
 
@@ -59,15 +60,23 @@ void undamp(const TomlTree& tree, const std::string& path, std::vector<std::stri
   }
 }
 
-// Keys of moduli that rods have by themselves.
-std::vector<std::string> own_moduli(const TomlTree& root) {
-  std::vector<std::string> out;
+// Changes that take from rods what they say by themselves: their moduli, and whether they give and bend.
+struct OwnOfRods {
+  std::vector<std::string> moduli, models;
+};
+
+OwnOfRods own_of_rods(const TomlTree& root) {
+  OwnOfRods out;
   const TomlTree* structure = root.find("structure");
   const TomlTree* rods = structure ? structure->find("rods") : nullptr;
   for (std::size_t i = 0; rods && i < rods->items.size(); ++i) {
-    const TomlTree* modulus = rods->items[i].find("youngs_modulus");
+    const std::string rod = "structure.rods[" + std::to_string(i) + "].";
+    const TomlTree &of = rods->items[i], *modulus = of.find("youngs_modulus"), *elastic = of.find("elastic"),
+                   *segments = of.find("segments");
     if (modulus && !(modulus->kind == TomlTree::Kind::real && std::isinf(modulus->real)))
-      out.push_back("structure.rods[" + std::to_string(i) + "].youngs_modulus");
+      out.moduli.push_back(rod + "youngs_modulus=inf");
+    if (elastic && elastic->boolean) out.models.push_back(rod + "elastic=false");
+    if (segments && segments->integer > 1) out.models.push_back(rod + "segments=1");
   }
   return out;
 }
@@ -77,15 +86,16 @@ void add_modulus(const TomlTree& root, std::vector<ModelChoice>& out) {
   const TomlTree* structure = root.find("structure");
   const TomlTree* modulus = structure ? structure->find("youngs_modulus") : nullptr;
   if (!modulus) return;
-  const std::vector<std::string> own = own_moduli(root);
-  const bool rigid = modulus->kind == TomlTree::Kind::real && std::isinf(modulus->real) && own.empty();
+  const OwnOfRods own = own_of_rods(root);
+  const bool rigid = modulus->kind == TomlTree::Kind::real && std::isinf(modulus->real) && own.moduli.empty();
   if (rigid) {
     out.push_back({"forces shared by stiffness: E = 70 GPa", {"structure.youngs_modulus=7e10"}});
     return;
   }
   std::vector<std::string> changes{"structure.rod_model=rigid", "structure.segments=1",
                                    "structure.youngs_modulus=inf"};
-  for (const std::string& key : own) changes.push_back(key + "=inf");
+  changes.insert(changes.end(), own.moduli.begin(), own.moduli.end());
+  changes.insert(changes.end(), own.models.begin(), own.models.end());
   out.push_back({"rigid rods: forces of least norm", std::move(changes)});
 }
 
@@ -94,17 +104,24 @@ void add_rod_models(const TomlTree& root, std::vector<ModelChoice>& out) {
   const std::string now = text_at(root, "structure", "rod_model");
   if (now.empty()) return;
   const TomlTree* modulus = root.find("structure")->find("youngs_modulus");
-  const bool endless = (!modulus || std::isinf(modulus->real)) && own_moduli(root).empty();
+  const OwnOfRods own = own_of_rods(root);
+  const bool endless = (!modulus || std::isinf(modulus->real)) && own.moduli.empty();
   const std::string known = endless ? ": E = 70 GPa" : "";
   const auto add = [&](const std::string& name, std::vector<std::string> changes) {
     if (endless) changes.emplace_back("structure.youngs_modulus=7e10");
     out.push_back({name + known, std::move(changes)});
   };
-  if (now != "rigid") out.push_back({"rigid rods", {"structure.rod_model=rigid"}});
-  if (now != "quasi-static")
-    add("quasi-static rods: stretched by the rigid run's forces", {"structure.rod_model=quasi-static"});
-  if (now != "elastic") add("elastic rods, with waves", {"structure.rod_model=elastic"});
   const TomlTree* segments = root.find("structure")->find("segments");
+  const auto without_waves = [&](const std::string& model) {
+    std::vector<std::string> changes{"structure.rod_model=" + model};
+    if (segments && segments->integer > 1) changes.emplace_back("structure.segments=1");
+    changes.insert(changes.end(), own.models.begin(), own.models.end());
+    return changes;
+  };
+  if (now != "rigid" || !own.models.empty()) out.push_back({"rigid rods", without_waves("rigid")});
+  if (now != "quasi-static" || !own.models.empty())
+    add("quasi-static rods: stretched by the rigid run's forces", without_waves("quasi-static"));
+  if (now != "elastic") add("elastic rods, with waves", {"structure.rod_model=elastic"});
   if (segments && segments->integer <= 1)
     add("bending rods: elastic, in 4 segments", {"structure.rod_model=elastic", "structure.segments=4"});
 }
@@ -213,6 +230,7 @@ Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hoo
   out.message = first->message;
   if (first->status == RunStatus::failed) return std::move(*first);
   out.deployment_time = deployment_time(*first);
+  record_singular_poses(*first);  // beside them forces may have no bound
   const double begin = thread_cpu_seconds();
   const Diagnostics found = diagnose(*first, hooks.cancelled);
   const RememberedExtremes once;
@@ -236,6 +254,13 @@ void add_switches(const Scene& scene, const TomlTree& root, std::vector<ModelCho
       if (element.enabled && (coupling || net))
         out.push_back({"without " + element.name, {element.key + ".enabled=false"}});
     }
+}
+
+// With the rows of its files in its text, where changes reach them.
+SceneSource without_files(const SceneSource& source) {
+  const Scene scene = source.read();
+  if (scene.files.empty()) return source;
+  return {source.path, {}, std::make_shared<const std::string>(scene_text(scene)), source.folder};
 }
 
 }  // namespace
@@ -275,7 +300,8 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
   return out;
 }
 
-std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats, const StudyHooks& hooks) {
+std::vector<MeasuredModel> compare_models(const SceneSource& asked, int repeats, const StudyHooks& hooks) {
+  const SceneSource source = without_files(asked);
   std::vector<MeasuredModel> out;
   std::optional<Simulation> base;
   const auto choices = model_choices(source);

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
+#include <string>
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/rod_peaks.hpp"
 #include "core/path/path_run.hpp"
 #include "core/scene/library.hpp"
 #include "core/simulate/singular_poses.hpp"
+#include "core/study/models.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -83,6 +86,20 @@ TEST_CASE("a bundle of scissors is passed with a force that has no bound, full a
       CHECK_FALSE(peak_rod_force(run, d).unique);
       CHECK(warns(run, d));
     }
+}
+
+TEST_CASE("the comparison of models says of a force that has no bound that it is not unique") {
+  const auto models =
+      compare_models({"s.toml", {"solver.step=0.05"}, std::make_shared<const std::string>(scissors)}, 1, {});
+  std::size_t rigid = 0;
+  for (const MeasuredModel& m : models)
+    if (m.choice.name == "as the scene says" || m.choice.name.starts_with("path:")) {
+      INFO(m.choice.name);
+      ++rigid;
+      CHECK(m.peak_force > 0);
+      CHECK_FALSE(m.peak_unique);
+    }
+  CHECK(rigid == 2);
 }
 
 // A load towards the bundle takes the mast through it; what its tip weighs has nothing to do with that.
