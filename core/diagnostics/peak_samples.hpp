@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -23,6 +24,23 @@ inline PeakInMotion vertex(const std::array<double, 3>& t, const std::array<doub
   if (!(bend < 0)) return {x[1], t[1]};
   const double at = std::clamp(0.5 * (t[0] + t[1]) - left / (2 * bend), t[0], t[2]);
   return {x[0] + (at - t[0]) * (left + bend * (at - t[1])), at};
+}
+
+// Where two lines meet between value k and the next, through the values before and behind them: of a
+// magnitude that passes zero, or the largest of several. NaN where the values bend beside that, too: a
+// parabola tells. `leads` says whether a smooth curve leads from a value to the next, `time` when it is.
+template <typename Leads, typename Time>
+PeakInMotion corner_in(const std::vector<double>& x, std::size_t k, const Leads& leads, const Time& time) {
+  const PeakInMotion none;
+  constexpr double bent = 0.25;  // of what bends between them; a parabola bends half as much beside it
+  if (k == 0 || !leads(k - 1) || !leads(k) || !leads(k + 1)) return none;
+  const auto slope = [&](std::size_t j) { return (x[j + 1] - x[j]) / (time(j + 1) - time(j)); };
+  const double rise = slope(k - 1), fall = slope(k + 1), h = time(k + 1) - time(k);
+  if (!(rise > 0 && fall < 0)) return none;
+  if (k > 1 && leads(k - 2) && std::abs(rise - slope(k - 2)) > bent * (rise - fall)) return none;
+  if (leads(k + 2) && std::abs(fall - slope(k + 2)) > bent * (rise - fall)) return none;
+  const double in = std::clamp((x[k + 1] - x[k] - fall * h) / (rise - fall), 0.0, h);
+  return {x[k] + rise * in, time(k) + in};
 }
 
 // At 9 times of a span, both ends among them.
@@ -63,6 +81,16 @@ struct PeakSamples {
                                 std::max(0.75 * std::max(std::abs(bend(k)), std::abs(bend(at))), rounding);
     };
     return unlike(at - 1) || unlike(at + 1);
+  }
+  // Of one beside value k, on its higher side; NaN: none.
+  PeakInMotion corner(std::size_t k) const {
+    const auto time = [&](std::size_t i) { return t[i]; };
+    const auto leads = [&](std::size_t i) {
+      return i + 1 < x.size() && std::isfinite(x[i]) && std::isfinite(x[i + 1]);
+    };
+    const PeakInMotion before = k > 0 ? corner_in(x, k - 1, leads, time) : PeakInMotion(),
+                       behind = corner_in(x, k, leads, time);
+    return before.value > behind.value || std::isnan(behind.value) ? before : behind;
   }
   std::optional<std::size_t> largest() const {
     std::optional<std::size_t> top;

@@ -202,11 +202,13 @@ class Neighbourhood {
   std::vector<std::size_t> by_steps_;    // of the steps from these states the quintic is not good enough
 };
 
-// States around which the motion may top `best`: local maxima whose parabola reaches it, the highest first.
-// What happened between two events within one step has no state to say how high it went: the longest of
-// these.
+// States around which the motion may top `best`: local maxima whose parabola reaches it, and those beside a
+// corner that does, of each the highest first. What happened between two events within one step has no state
+// to say how high it went: the longest of these.
 std::vector<std::size_t> candidates(const Trajectory& run, const std::vector<double>& x, double best) {
-  std::vector<std::pair<double, std::size_t>> found, alone;
+  std::vector<std::pair<double, std::size_t>> found, corners, alone;
+  const auto time = [&](std::size_t k) { return run.time(k); };
+  const auto leads = [&](std::size_t k) { return k + 1 < x.size() && joined(run, k, k + 1); };
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::isnan(x[i])) continue;
     const bool from = i > 0 && joined(run, i - 1, i), on = i + 1 < x.size() && joined(run, i, i + 1);
@@ -222,6 +224,9 @@ std::vector<std::size_t> candidates(const Trajectory& run, const std::vector<dou
                                      {x[middle - 1], x[middle], x[middle + 1]})
                                   .value);
     if (reach >= best) found.push_back({reach, i});
+    const double corner =
+        std::fmax(i > 0 ? corner_in(x, i - 1, leads, time).value : best, corner_in(x, i, leads, time).value);
+    if (corner > best) corners.push_back({corner, i});
   }
   std::vector<std::size_t> out;
   const auto take = [&](std::vector<std::pair<double, std::size_t>>& from, std::size_t most) {
@@ -231,6 +236,7 @@ std::vector<std::size_t> candidates(const Trajectory& run, const std::vector<dou
       if (std::find(out.begin(), out.end(), from[k].second) == out.end()) out.push_back(from[k].second);
   };
   take(found, most_candidates);
+  take(corners, most_candidates);
   take(alone, most_alone);
   return out;
 }
@@ -276,23 +282,29 @@ PeakInMotion closer(const Neighbourhood& around, const StateValues& values, Peak
     for (std::size_t k = 0; k < all.x.size(); ++k) take(all.x[k], all.t[k]);
     return all;
   };
+  const auto at_parabola = [&](const PeakSamples& some, std::size_t at) {
+    if (!some.has_both(at)) return;
+    const PeakInMotion top = some.parabola(at);
+    const double there = around.sample({top.t}, values).front(), above = top.value - some.x[at];
+    // Next to a singular pose one state by itself may say anything. A corner has no parabola.
+    if (std::abs(there - some.x[at]) <= 2 * above)
+      take(there, top.t);
+    else if (!some.is_corner(at))
+      take(top.value, top.t);
+  };
   const PeakSamples all = samples(around.begin(), around.end());
   for (const std::size_t k : all.tops(best.value)) {
     PeakSamples some = samples(all.t[k > 0 ? k - 1 : 0], all.t[std::min(k + 1, all.t.size() - 1)]);
-    for (const std::size_t at : some.tops(best.value)) {
-      if (!some.has_both(at)) continue;
-      const PeakInMotion top = some.parabola(at);
-      const double there = around.sample({top.t}, values).front(), above = top.value - some.x[at];
-      // Next to a singular pose one state by itself may say anything. A corner has no parabola.
-      if (std::abs(there - some.x[at]) <= 2 * above)
-        take(there, top.t);
-      else if (!some.is_corner(at))
-        take(top.value, top.t);
-    }
+    for (const std::size_t at : some.tops(best.value)) at_parabola(some, at);
     for (int zoom = 0; zoom < most_zooms; ++zoom) {
       const std::optional<std::size_t> at = some.largest();
       if (!at || !some.is_corner(*at)) break;
       some = samples(some.t[*at - 1], some.t[*at + 1]);
+      if (const auto top = some.largest(); top && !some.is_corner(*top)) at_parabola(some, *top);
+    }
+    if (const auto at = some.largest()) {
+      if (const PeakInMotion top = some.corner(*at); !std::isnan(top.value))
+        take(around.sample({top.t}, values).front(), top.t);
     }
   }
   return best;

@@ -8,18 +8,38 @@
 
 namespace unfurl {
 
+namespace {
+
+// Of a part that is over with the last state so far: the first of the states that go on being known, and how
+// many belong to the part and to what was before it.
+std::pair<std::size_t, std::size_t> end_of_part(const Trajectory& all, std::size_t around) {
+  const std::size_t n = all.size();
+  std::size_t from = n - 1;
+  while (from > 0 && n - from < 2 * around && &all.model(from - 1) == &all.model(n - 1)) --from;
+  return {from, std::max(from + 1, n - std::min(n, around))};
+}
+
+}  // namespace
+
+// Where parts_for() would have a long run handed over the method begins anew whether it is or not: who keeps
+// all of it goes the same way.
+void Stepper::Loop::begin_anew_behind_part() {
+  const Parts parts = parts_for(*original_);
+  if (run_.trajectory.size() - part_ < parts.states + parts.around) return;
+  part_ = end_of_part(run_.trajectory, parts.around).second;
+  forget();
+}
+
 Stepper::Window Stepper::Loop::take_window(std::size_t around) {
   const Trajectory& all = run_.trajectory;
   const std::size_t n = all.size();
-  std::size_t from = n - 1;  // the first that stays
-  while (from > 0 && n - from < 2 * around && &all.model(from - 1) == &model()) --from;
-  const std::size_t last = std::max(from + 1, n - std::min(n, around));
+  const auto [from, last] = end_of_part(all, around);
   Trajectory rest(original_, run_.options);
   if (present_ != original_) rest.change_model(present_);
   for (std::size_t i = from; i < n; ++i) rest.append(all.state(i), all.report(i));
   Window window{run_, new_, last};
   run_.trajectory = std::move(rest);
-  new_ = last - from;
+  part_ = new_ = last - from;
   forget();
   return window;
 }
@@ -47,6 +67,7 @@ void Stepper::Loop::archive(Archive& archive) {
   archive(run_.warnings);
   archive_events(archive, run_.events);
   archive(new_);
+  part_ = new_;
   archive_models(archive);
   archive(last_touch_);
   archive(turning_back_);

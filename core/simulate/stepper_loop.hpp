@@ -126,7 +126,10 @@ class Stepper::Loop {
     return find_method(run_.options.method)->make(system(), run_.options);
   }
 
+  void begin_anew_behind_part();
+
   TimeGrid::Target next_target() {
+    begin_anew_behind_part();
     if (!run_.options.adaptive) return grid_.next(now().t);
     if (controlled_ != &system()) {  // the first step, or the model has changed
       controlled_ = &system();
@@ -487,8 +490,8 @@ class Stepper::Loop {
   bool deployed_ = false, ended_ = false, regular_ = false;
   double margin_ = stepping::singular_margin;  // a tenth of where the run began, if that is less
   VectorXd q_;
-  std::size_t new_ = 0;   // states before were handed over
-  double last_step_ = 0;  // of the control of steps, where that begins anew
+  std::size_t new_ = 0, part_ = 0;  // first state that was not handed over, first of the present part
+  double last_step_ = 0;            // of the control of steps, where that begins anew
   bool latched_ = false;
   std::string locked_sides_;  // what was held when a latch locked it; empty: nothing was
   double locked_at_ = 0;

@@ -154,6 +154,24 @@ TEST_CASE("a run that was archived goes on to the same bits, whatever it has") {
     check_same_end(in_parts(c, 37, 5, &all.archives[k]), all);
 }
 
+// Chaotic, with events in the way, with steps of any length, of 128 states a part.
+TEST_CASE("a run that is kept whole has the bits of one that is handed over part by part") {
+  const auto c =
+      GENERATE(Case{"double_pendulum", {"solver.end_time=50"}}, Case{bouncing, {"solver.step=0.0009"}},
+               Case{"hoop6_sector", {"solver.adaptive=true", "solver.step=0.0005", "solver.stages=3"}},
+               Case{"chain", {}}, Case{rubbing, {"solver.step=0.0015", "solver.method=rk4"}});
+  CAPTURE(c.scene, c.changes);
+  const Scene scene = scene_of(c);
+  const auto model = build_model(scene);
+  const Parts usual = parts_for(*model);
+  const Whole all = in_parts(c, usual.states, usual.around);
+  REQUIRE(all.archives.size() >= 1);
+  Whole one{{}, {}, 0, simulate(model, scene.solver)};
+  one.take(one.end, 0, one.end.trajectory.size());
+  REQUIRE(one.states.size() == all.states.size());
+  check_same_end(one, all);
+}
+
 TEST_CASE("what a run in parts holds does not grow with its length") {
   const Case c{"double_pendulum", {"solver.end_time=20"}};
   const Whole all = in_parts(c, 100, 10);
