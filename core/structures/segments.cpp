@@ -13,16 +13,6 @@ namespace {
   throw StructureError("segments", message);
 }
 
-// A node without mass and without a rod follows from others: a point of a rod.
-void refuse_points_on_rods(const Structure& structure) {
-  std::vector<char> ends(structure.nodes.size(), 0);
-  for (const Rod& rod : structure.rods)
-    ends[static_cast<std::size_t>(rod.a)] = ends[static_cast<std::size_t>(rod.b)] = 1;
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    if (!ends[i] && structure.nodes[i].mass == 0)
-      refuse("rods that carry a pin between their ends (" + structure.nodes[i].name + ") cannot be cut");
-}
-
 class Cutter {
  public:
   explicit Cutter(Structure& structure) : s_(structure), rods_(std::move(structure.rods)) {
@@ -113,7 +103,6 @@ void cut_rods(Structure& structure, const std::vector<long>& segments) {
   if (std::all_of(segments.begin(), segments.end(), [](long k) { return k <= 1; })) return;
   if (structure.sectors > 1 || structure.node_copies.size() != structure.nodes.size())
     refuse("a sector model cannot cut its rods; set structure.model to \"full\"");
-  refuse_points_on_rods(structure);
   Cutter(structure).cut(segments);
 }
 

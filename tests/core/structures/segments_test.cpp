@@ -134,12 +134,6 @@ TEST_CASE("what is not cut stays, and what cannot be cut is refused") {
   sector = row();
   sector.node_copies.pop_back();
   CHECK(refusal(sector, {1, 1, 2}) == whole);
-  Structure pin = row();
-  pin.nodes.push_back({"P", Vec3(1, 1, 1), Vec3::Zero(), 0.0});
-  pin.node_copies.push_back({"P", 4, Mat3::Identity(), Vec3::Zero()});
-  CHECK(refusal(pin, {1, 1, 2}) == "rods that carry a pin between their ends (P) cannot be cut");
-  pin.nodes.back().mass = 0.1;
-  CHECK(refusal(pin, {1, 1, 2}).empty());
 }
 
 // A column of 2 m, 1e-4 m^2, round, pressed with 250 N: Euler's load is pi^2 E A^2 / (4 pi l^2).
@@ -278,6 +272,14 @@ rods = [{nodes = ["A", "B"], density = 2700, area = 1e-4, segments = )") +
       said = said || note.find("1 rod with pins between the ends") != std::string::npos;
     CHECK(said);
   }
+  // A point without mass, and one of the ground that no rod leads to: beside the rod, or the anchor of a
+  // hinge.
+  const std::vector<std::string> massless{"structure.nodes.P.mass=0",
+                                          "structure.rods=[{nodes=['A','B'],density=2700,"
+                                          "area=1e-4,segments=4},{nodes=['B','Q'],density=2700,area=1e-4}]"};
+  CHECK_THAT(testing::error_of(beam(holds[0], "4"), massless), Catch::Contains("cannot be cut"));
+  const std::string anchor = "kind = 'fixed'\nnodes = ['P']\n";
+  CHECK(testing::error_of(beam(anchor, "4"), massless).empty());
   // Places may be given in five digits.
   const std::vector<std::string> rounded{"structure.nodes.P.position=[1, 0, 3e-5]"};
   CHECK_THAT(testing::error_of(beam(holds[0], "4"), rounded), Catch::Contains("cannot be cut"));
