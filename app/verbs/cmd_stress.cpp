@@ -49,7 +49,7 @@ int cmd_stress(const Arguments& arguments) {
   const StressPlan plan = plan_stress(source, arguments.study.extremes);
   const InterruptGuard guard;
   StudySession session(arguments, "stressing", study_identity("An atlas", scene), "stress.csv");
-  const auto team = join_team(arguments, session.directory());
+  const auto team = join_team(arguments, session);
   std::optional<Stress> found;
   {
     const StudyHooks hooks = session.hooks();

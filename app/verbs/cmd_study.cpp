@@ -102,7 +102,7 @@ int cmd_study(const Arguments& arguments) {
   plan.timing.repeats = repeats;
   Journal earlier({}, study_columns(), study_key_columns, study_number_columns(), is_study_point);
   session.require_asked(earlier, [&](const auto& row) { return asks_for(plan, row); });
-  const auto team = join_team(arguments, session.directory());
+  const auto team = join_team(arguments, session);
   std::optional<Study> found;
   {
     Journal journal(team ? team->journal() : session.journal(), study_columns(), study_key_columns,

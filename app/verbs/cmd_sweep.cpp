@@ -278,7 +278,7 @@ int cmd_sweep(const Arguments& arguments) {
   const InterruptGuard guard;
   const std::string name = identity(scene, plan);
   StudySession session(arguments, "sweeping", name, journal_name(plan.shard));
-  const auto team = join_team(arguments, session.directory());
+  const auto team = join_team(arguments, session);
   const auto computed = compute(plan, session, session.hooks(), arguments, name, team.get());
   if (!computed) return nothing_to_write(arguments);
   const Sweep& sweep = *computed;

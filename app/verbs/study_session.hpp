@@ -48,6 +48,11 @@ class StudySession {
   StudySession(const Arguments& arguments, std::string task, const std::string& identity,
                std::string journal);
 
+  // A file in the directory has results added to it as they come.
+  void grows(const std::filesystem::path& file) {
+    output_.written().grows(file.lexically_relative(directory()).generic_string());
+  }
+
   StudyHooks hooks();
   const std::filesystem::path& directory() const { return output_.path(); }
   std::filesystem::path journal() const { return directory() / journal_; }

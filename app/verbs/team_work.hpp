@@ -25,6 +25,13 @@ inline std::unique_ptr<Team> join_team(const Arguments& arguments, const std::fi
   return arguments.join ? std::make_unique<Team>(directory / "join", arguments.lease) : nullptr;
 }
 
+// The same over the directory of a study, in which the worker's journal grows.
+inline std::unique_ptr<Team> join_team(const Arguments& arguments, StudySession& session) {
+  auto team = join_team(arguments, session.directory());
+  if (team) session.grows(team->journal());
+  return team;
+}
+
 // `done()` works off what no other worker is at and says whether all is there; it is asked until it is, or
 // until a person interrupts (false). True for the one worker that is to write the results.
 template <class Done>

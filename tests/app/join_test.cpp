@@ -83,6 +83,7 @@ TEST_CASE("a directory of a --join goes on, and holds one sweep") {
   CHECK(run_program(joined).code == 0);
   const std::string points = file_text(dir / "out/sweep.csv");
   CHECK(std::count(points.begin(), points.end(), '\n') == 201);
+  CHECK(run_program({"verify", dir / "out"}).code == 0);
   const ProgramResult other = run_program(joined + std::vector<std::string>{"--set", "solver.end_time=7.5"});
   CHECK(other.code == 5);
   CHECK(other.err.find("holds results of another scene") != std::string::npos);
@@ -113,7 +114,13 @@ TEST_CASE("studies and films are shared like a sweep") {
       INFO(line);
       CHECK(count == 1);
     }
+    CHECK(run_program({"verify", dir / out}).code == 0);
+    fs::remove_all(dir / (out + "/join"));  // when all have ended
+    CHECK(run_program({"verify", dir / out}).code == 0);
+    fs::remove(dir / (out + "/" + results[i]));
+    CHECK(run_program({"verify", dir / out}).code == 7);
   }
+  REQUIRE(run_program(commands[1] + std::vector<std::string>{"-o", dir / "out1"}).code == 0);
   const ProgramResult alone = run_program(commands[1] + std::vector<std::string>{"-o", dir / "alone"});
   CHECK(alone.code == 0);
   for (const char* name :
