@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/path/path.hpp"
 #include "core/scene/build.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "core/study/reference.hpp"
@@ -34,6 +35,10 @@ double SceneObjective::at(double x) {
       told.unique = find_measure(flag).value(run, diagnostics) != 0.0;
     return measure_.value(run, diagnostics);
   } catch (const SceneError&) {
+    return none;
+  } catch (
+      const PathRefused&) {  // solver.model = "path": one parameter without an answer, if others have one
+    if (told_.empty()) throw;
     return none;
   }
 }

@@ -135,8 +135,9 @@ class Search {
       if (nothing) x = 0;
       const Evaluation e = at(x);
       if (nothing && !valid(e)) continue;
-      if (constexpr double rounding = 1e-15;
-          nothing && std::abs(e.value - target_) <= rounding * std::max(std::abs(fa), std::abs(fb))) {
+      // Beside what is not endless of the ends; of those one may be.
+      const double scale = std::max(std::isinf(fa) ? 0 : std::abs(fa), std::isinf(fb) ? 0 : std::abs(fb));
+      if (constexpr double rounding = 1e-15; nothing && off(e) <= rounding * scale) {
         a_ = b_ = best_ = e;
         return;
       }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "core/path/path.hpp"
 #include "core/study/reference.hpp"
 
 using namespace unfurl;
@@ -51,6 +52,27 @@ TEST_CASE("a measure is a function of a scene's key") {
   CHECK_FALSE(peak.unique(-1));
   CHECK_FALSE(peak.unique(3));  // not asked for
   CHECK_FALSE(objective_of(bob, "structure.nodes[B].mass", "end_time").unique(2));
+}
+
+// Two stops at one angle are met at once, which no path describes: where nothing else was asked for, it is
+// told. Of a bob of 2 kg that falls from the level to 60 degrees below it the stop takes 1 - 0.4^2 of 20 N m
+// sin 60.
+TEST_CASE("a parameter that a path refuses has no measure where others have one") {
+  const std::string stops = R"(
+structure.kind = "custom"
+structure.nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], mass = 2},
+  {name = "X", position = [0, 0, -1], fixed = true}]
+structure.rods = [{nodes = ["O", "B"], mass = 0}]
+structure.constraints = [{kind = "plane", nodes = ["B"], normal = [0, 1, 0]}]
+constraints = [{kind = "angle_stop", name = "s", nodes = ["X", "O", "B"], min = 30, restitution = 0.4},
+  {kind = "angle_stop", name = "t", nodes = ["X", "O", "B"], min = 20, restitution = 0.4}]
+gravity.acceleration = [0, 0, -10]
+solver = {step = 0.01, end_time = 1, model = "path"}
+)";
+  SceneObjective most = objective_of(stops, "constraints[t].min", "max:kinetic_energy_J");
+  CHECK_THROWS_AS(most.at(30), PathRefused);
+  CHECK(most.at(20) == Approx(20 * std::sin(pi / 3)).epsilon(1e-6));
+  CHECK(std::isnan(most.at(30)));
 }
 
 TEST_CASE("a force that the model does not determine is told of the run that was asked for") {

@@ -33,6 +33,22 @@ TEST_CASE("a root between two ends is found on either side of where the scene st
   CHECK(exact.high == 2.5);
 }
 
+// As the time to deployment of a drive's force: endless where nothing drives, and the other way. Strides
+// reach there before they reach a slow deployment.
+TEST_CASE("a root is found beside parameters at which the measure is endless") {
+  for (const double sign : {1.0, -1.0})
+    for (const double target : {4.0, 7.9, 10.0, 300.0})
+      for (const double endless : {1.0, -1.0}) {
+        INFO(sign << " " << target << " " << endless);
+        const auto f = [&](double x) {
+          return sign * x > 0 ? endless * 4.92 * std::sqrt(200 / (sign * x))
+                              : endless * std::numeric_limits<double>::infinity();
+        };
+        const Solved s = solve_for(f, endless * target, {.start = sign * 200}, {});
+        CHECK(s.x == Approx(sign * 200 * 4.92 * 4.92 / (target * target)).epsilon(1e-11));
+      }
+}
+
 // What a stop takes of a swing that no longer meets it: exactly nothing, from some parameter on.
 TEST_CASE("a plateau on the target is met from above and from below, on either side") {
   for (const double sign : {1.0, -1.0})
