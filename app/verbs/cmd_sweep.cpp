@@ -284,7 +284,12 @@ int cmd_sweep(const Arguments& arguments) {
   const Sweep& sweep = *computed;
   for (const std::string& conflict : sweep.conflicts) std::cerr << "unfurl: warning: " << conflict << "\n";
   if (!sweep.moved.empty()) std::cerr << "unfurl: warning: " << sweep.moved << "\n";
-  for (const std::string& warning : sweep.warnings) std::cerr << "unfurl: warning: " << warning << "\n";
+  for (const std::string& warning : sweep.warnings) {
+    const bool told = std::ranges::any_of(plan.axes, [&](const SweepAxis& axis) {  // by warn_of_idle_axes()
+      return warning.find("--set " + axis.key + ": does nothing") != std::string::npos;
+    });
+    if (!told) std::cerr << "unfurl: warning: " << warning << "\n";
+  }
   warn_of_unanswered(plan, sweep, scene.solver.model, arguments);
   session.write(journal_name(plan.shard), csv_text(sweep.table));
   const std::size_t bad = unanswered(plan, sweep);

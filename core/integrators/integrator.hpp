@@ -57,5 +57,7 @@ struct Method {
 
 std::span<const Method> methods();
 const Method* find_method(std::string_view name);
+// Does the order of the method depend on the number of stages?
+bool order_depends_on_stages(const SolverOptions& options);
 
 }  // namespace unfurl

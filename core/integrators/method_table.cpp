@@ -124,4 +124,11 @@ const Method* find_method(std::string_view name) {
   return it == rows.end() ? nullptr : &*it;
 }
 
+bool order_depends_on_stages(const SolverOptions& options) {
+  const Method& method = *find_method(options.method);
+  SolverOptions two = options, four = options;
+  two.stages = 2, four.stages = 4;
+  return method.claims(two).order != method.claims(four).order;
+}
+
 }  // namespace unfurl

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/integrators/integrator.hpp"
 #include "core/scene/custom_reader.hpp"
 #include "core/scene/key_tables.hpp"
 #include "core/scene/table_reader.hpp"
@@ -124,6 +125,19 @@ void read_deployment(TableReader& root, const TomlTree& tree, Scene& scene, Scen
   element.places = table.places();
 }
 
+// What a person sets of the solver on a command line that another key leaves without meaning. In a scene it
+// may be there for other runs of it.
+void warn_of_idle_steps(TableReader& table, const SolverOptions& solver) {
+  if (solver.model == "path") {
+    table.warn_overridden({"method", "stages", "nodes", "constraints_at", "baumgarte", "rho_inf", "turn"},
+                          "with model = 'path', whose motion is at round-off whatever the method");
+  } else if (solver.tolerance > 0 && find_method(solver.method)) {
+    constexpr const char* picks = "with tolerance > 0, which picks stages and step";
+    table.warn_overridden({"step"}, picks);
+    if (order_depends_on_stages(solver)) table.warn_overridden({"stages"}, picks);
+  }
+}
+
 void read_solver(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
   const TomlTree* found = root.table("solver");
   TableReader table(found, "solver", place(found, tree), notes);
@@ -133,6 +147,7 @@ void read_solver(TableReader& root, const TomlTree& tree, Scene& scene, SceneNot
   if (scene.solver.adaptive && scene.solver.tolerance > 0)
     notes.warnings.push_back({found->find("adaptive")->where, table.key("adaptive"),
                               "does nothing with tolerance > 0, which picks steps that are all equal"});
+  warn_of_idle_steps(table, scene.solver);
   const Family* family = find_family(scene.kind);
   if (!table.has("end_time") && ((family && family->deploys) || !scene.deployment.terms.empty()))
     scene.solver.end_time = time_to_deploy;

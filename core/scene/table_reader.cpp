@@ -200,6 +200,16 @@ void TableReader::warn_idle(const std::vector<ParamSpec>& specs, const ParamSet&
   }
 }
 
+void TableReader::warn_overridden(std::initializer_list<std::string_view> keys, std::string_view reason) {
+  for (const std::string_view name : keys) {
+    if (!has(name) || !overridden(*table_->find(name))) continue;
+    const auto same = [&](const SceneProblem& warning) { return warning.key == key(name); };
+    if (std::ranges::none_of(notes_.warnings, same))
+      notes_.warnings.push_back(
+          {table_->find(name)->where, key(name), "does nothing " + std::string(reason)});
+  }
+}
+
 std::map<std::string, SourceLocation, std::less<>> TableReader::places() const {
   std::map<std::string, SourceLocation, std::less<>> places;
   if (table_)

@@ -2,6 +2,7 @@
 // One table of a scene against its declared parameters.
 #pragma once
 
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <set>
@@ -56,6 +57,8 @@ class TableReader {
   // Warns of every key that is given although it means nothing with the values that the others have; not of
   // one that a file gives its default, as every scene does that is written with all of its keys.
   void warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values, Idle which = Idle::all);
+  // Warns that those of these keys that were set on a command line do nothing `reason`, if that was not said.
+  void warn_overridden(std::initializer_list<std::string_view> keys, std::string_view reason);
 
   std::string key(std::string_view name) const;  // dotted
   bool has(std::string_view name) const { return table_ && table_->find(name); }

@@ -288,13 +288,6 @@ class Picker {
 
 }  // namespace
 
-bool order_depends_on_stages(const SolverOptions& options) {
-  const Method& method = *find_method(options.method);
-  SolverOptions two = options, four = options;
-  two.stages = 2, four.stages = 4;
-  return method.claims(two).order != method.claims(four).order;
-}
-
 namespace {
 
 // The full model, or one of its sectors where it is a ring whose sectors are alike and that is allowed.

@@ -25,7 +25,4 @@ namespace unfurl {
 Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const SolverOptions& options,
                              const SimulationHooks& hooks = {});
 
-// Does the order of the method depend on the number of stages?
-bool order_depends_on_stages(const SolverOptions& options);
-
 }  // namespace unfurl

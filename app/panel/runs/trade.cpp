@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/integrators/integrator.hpp"
 #include "core/study/tolerance.hpp"
 #include "render/plot/ticks.hpp"
 

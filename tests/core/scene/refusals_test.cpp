@@ -354,6 +354,17 @@ TEST_CASE("what is set on the command line and does nothing is warned of in ever
   CHECK(said({"solver.turn=0.2", "solver.adaptive=true"}).empty());
   CHECK(said({"solver.tolerance=1e-6", "solver.turn=0.2", "solver.adaptive=true"}) ==
         "--set solver.adaptive: does nothing with tolerance > 0, which picks steps that are all equal\n");
+  const std::string picks = "does nothing with tolerance > 0, which picks stages and step\n";
+  CHECK(said({"solver.tolerance=1e-6", "solver.step=0.1", "solver.stages=7"}) ==
+        "--set solver.step: " + picks + "--set solver.stages: " + picks);
+  CHECK(said({"solver.tolerance=1e-6"}).empty());
+  CHECK(said({"solver.step=0.1", "solver.stages=7"}).empty());
+  for (const std::string setting : {"method=rk4", "nodes=chebyshev", "stages=7", "constraints_at=ends"})
+    CHECK(said({"solver.model=path", "solver." + setting}) ==
+          "--set solver." + setting.substr(0, setting.find('=')) +
+              ": does nothing with model = 'path', whose motion is at round-off whatever the method\n");
+  CHECK(said({"solver.model=path", "solver.step=0.1"}).empty());
+  CHECK(said({"solver.model=auto", "solver.method=rk4"}).empty());
   CHECK(said({"solver.rho_inf=0.5"}) == "--set solver.rho_inf: does nothing with method = 'dvm'\n");
   CHECK(said({"structure.wall_thickness=0.001"}) ==
         "--set structure.wall_thickness: does nothing with section = 'round'\n");
