@@ -218,6 +218,12 @@ std::optional<MeasureTerm> term_of(const SceneElement& e, MemberFinder& find, co
 
 void hold_sum(const SceneElement& e, ElementAdder& to, Measure measure, TimeFunction target,
               const std::string& suffix = "") {
+  for (const MeasureTerm& term : measure.terms)
+    if (term.measure.kind == MeasureKind::angle && !counts_turns(term.measure) &&
+        std::abs(std::sin(to.find.initial(term.measure))) < 1e-6)
+      to.find.problem(e, e.kind == "combination" ? "terms" : "axis",
+                      "needs an axis: rods are in line at t = 0, where an angle without one has no direction "
+                      "to grow in");
   to.structure.constraints.push_back(
       {"measure", e.name + suffix, measure.nodes, {}, 0.0, std::move(measure), std::move(target)});
 }
@@ -422,6 +428,15 @@ void give_deployment(const Scene& scene, Structure& structure) {
   else if (counts_turns(*measure))  // the turn on which it begins is that of the values given
     measure->reference = initial -= 2 * pi * std::round((initial - 0.5 * (d.stowed + d.deployed)) / (2 * pi));
   d.measure = *measure;
+  // Where it turns back a measure can be reached, but nothing holds it there.
+  const MeasureRange range = range_of(*measure);
+  const double same = find.same(*measure, d.deployed);
+  if (d.deployed < range.low - same || d.deployed > range.high + same)
+    find.problem(e, "deployed", "is never reached: " + values_within(*measure));
+  else if (scene.solver.at_deployed == "latch" &&
+           (d.deployed <= range.low + same || d.deployed >= range.high - same))
+    find.problem(e, "deployed",
+                 "cannot be held by a latch, as the measure turns back there: " + values_within(*measure));
   const double way = d.deployed - d.stowed;
   double factors = measure->kind == MeasureKind::combination ? 0.0 : 1.0;
   for (const MeasureTerm& term : measure->terms) factors += std::abs(term.coefficient);

@@ -108,6 +108,8 @@ void add_cable(const SceneElement& element, ElementAdder& to);
 // What [deployment] says, into a structure. Throws SceneError.
 void give_deployment(const Scene& scene, Structure& structure);
 
+// "a distance stays > 0", or what else ends the values of a measure.
+std::string values_within(const Measure& measure);
 // How the entry's value moves from `initial` on [m] or [rad]; what it cannot reach is noted.
 TimeFunction motion_of(const SceneElement& element, ElementAdder& to, const Measure& measure, double initial);
 

@@ -82,31 +82,30 @@ double unit_of(const Measure& measure) {
   return is_angle(measure) ? radians_per_degree : 1.0;
 }
 
-// Angles without an axis stay above 0 and below 180 degrees, where they have no direction to go on in;
-// lengths stay above 0.
-bool is_unsigned(const Measure& measure) {
-  return measure.kind == MeasureKind::angle && !counts_turns(measure);
-}
-
-// A drive that leaves the values that its measure can take is refused, with the time when it does.
+// A drive that leaves the values that its measure can take is refused, with the time when it does: lengths
+// stay above 0, angles without an axis between 0 and 180 degrees, where they have no direction to go on in.
 void check_reach(const SceneElement& e, ElementAdder& to, const Measure& measure, const TimeFunction& f) {
-  const bool length = measure.kind == MeasureKind::length || e.kind == "cable" || e.kind == "telescope";
-  if ((!length && !is_unsigned(measure)) || !f.moves()) return;
+  const MeasureRange range = range_of(measure);
+  if ((!std::isfinite(range.low) && !std::isfinite(range.high)) || !f.moves()) return;
   // A run may end before a constant rate comes that far: where it is deployed.
   if (f.kind == TimeFunction::Kind::rate && !to.structure.deployment.empty()) return;
   constexpr int samples = 4000;
   for (int i = 0; i <= samples; ++i) {
     const double t = to.end_time * i / samples, value = f(t);
-    if (value > 0 && (length || value < pi)) continue;
+    if (value > range.low && value < range.high) continue;
     const char* key = f.kind == TimeFunction::Kind::rate     ? "rate"
                       : f.kind == TimeFunction::Kind::smooth ? "to"
                                                              : "values";
+    const bool path = e.kind == "cable" || e.kind == "telescope",
+               sum = measure.kind == MeasureKind::combination && !path;
     std::ostringstream text;
     text.precision(4);
-    text << "takes the " << (length ? "length" : "angle") << " to " << value / unit_of(measure)
-         << (length ? " m" : " deg") << " at t = " << t << " s: "
-         << (length ? "it must stay > 0"
-                    : "without an axis it stays between 0 and 180 deg; give the axis of the hinge");
+    text << "takes the "
+         << (sum                 ? "sum"
+             : is_angle(measure) ? "angle"
+                                 : "length")
+         << " to " << value / unit_of(measure) << (is_angle(measure) ? " deg" : " m") << " at t = " << t
+         << " s: " << (sum || is_angle(measure) ? values_within(measure) : "it must stay > 0");
     return to.find.problem(e, key, text.str());
   }
 }
@@ -147,10 +146,10 @@ void push_stop(const SceneElement& e, ElementAdder& to, Measure measure) {
     const double limit = lower ? minimum : maximum;
     if (std::isnan(limit)) continue;
     (lower ? stop.min : stop.max) = limit;
-    if (is_unsigned(measure) && !(limit >= 0 && limit <= pi))
-      to.find.problem(e, key,
-                      "is never met: without an axis the angle stays between 0 and 180 deg; give the axis of "
-                      "the hinge");
+    // A limit at which the measure turns back is not passed, nor met.
+    const MeasureRange range = range_of(measure);
+    if (lower ? limit <= range.low || limit > range.high : limit >= range.high || limit < range.low)
+      to.find.problem(e, key, "is never met: " + values_within(measure));
     if (lower ? initial >= limit - round_off : initial <= limit + round_off) continue;
     std::ostringstream text;
     text.precision(15);
@@ -191,6 +190,23 @@ void add_stop(const SceneElement& e, ElementAdder& to) {
 }
 
 }  // namespace
+
+std::string values_within(const Measure& measure) {
+  const MeasureRange range = range_of(measure);
+  if (measure.kind == MeasureKind::length) return "a distance stays > 0";
+  if (measure.kind == MeasureKind::angle)
+    return "without an axis the angle stays between 0 and 180 deg; give the axis of the hinge";
+  std::ostringstream text;
+  text.precision(4);
+  const char* unit = is_angle(measure) ? " deg" : " m";
+  text << "it stays ";
+  if (std::isfinite(range.low)) text << "> " << range.low / unit_of(measure) << unit;
+  if (std::isfinite(range.low) && std::isfinite(range.high)) text << " and ";
+  if (std::isfinite(range.high)) text << "< " << range.high / unit_of(measure) << unit;
+  text << ", as distances stay > 0 and angles without an axis between 0 and 180 deg; give those their axis "
+          "(angle A H B about X Y Z)";
+  return text.str();
+}
 
 TimeFunction motion_of(const SceneElement& e, ElementAdder& to, const Measure& measure, double initial) {
   TimeFunction f = motion_function(e.values, initial, unit_of(measure));

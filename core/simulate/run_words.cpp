@@ -2,6 +2,7 @@
 #include "core/simulate/run_words.hpp"
 
 #include "core/forces/pin_loads.hpp"
+#include "core/simulate/turning_back.hpp"
 #include "core/system/blocked_motion.hpp"
 #include "core/system/consistency.hpp"
 
@@ -25,6 +26,8 @@ std::string cure(const Model& model, const State& state, bool latched, double h)
   if (h > 0) {
     const System system = model.system.at(state);
     if (const std::string beyond = beyond_reach(system, state.t, h, q); !beyond.empty()) return "; " + beyond;
+    if (const std::string end = at_its_end(model.structure, system, state, h); !end.empty())
+      return ": " + end;
     if (const std::string rods = held_at_second_order(system, q); !rods.empty())
       return "; " + rods +
              " hold each other in this pose, and what looks free there is not (as rods in line are not): "

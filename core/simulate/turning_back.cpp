@@ -14,6 +14,13 @@ namespace {
 constexpr double at_it = 1e-9;   // of the lengths that make it up: nearer, its side is rounding
 constexpr double near_it = 0.1;  // of both states' own: what passes further away has turned round otherwise
 
+constexpr double never = std::numeric_limits<double>::quiet_NaN();
+
+bool turns_back(const Measure& m) {
+  if (m.nodes.empty()) return false;  // a force that acts on no measure
+  return m.kind == MeasureKind::length || (m.kind == MeasureKind::angle && !counts_turns(m));
+}
+
 // Zero where the measure turns back, pointing the other way behind: the distance itself, or the normal of an
 // angle's lines. `size`: what it is to be compared with.
 Vec3 side_of(const Measure& measure, const VectorXd& q, double& size) {
@@ -51,6 +58,23 @@ std::string through(const std::string& name, bool angle) {
                      "order of solver.step";
 }
 
+std::string held_through(const std::string& name, bool angle) {
+  return angle ? "the rods of " + name +
+                     " pass through one line, where an angle without an axis turns back, and with it what " +
+                     name + " holds; give an axis"
+               : "a length of " + name +
+                     " falls to 0 and turns back, and with it what is held: end its travel before that "
+                     "(kind = \"length_stop\")";
+}
+
+std::string stop_missed(const std::string& name, bool angle) {
+  return angle ? "the rods of " + name +
+                     " pass through one line beyond its limit, where an angle without an axis turns back: it "
+                     "is not met; give an axis"
+               : "the ends of " + name +
+                     " pass each other beyond its limit: it is not met; take a smaller solver.step";
+}
+
 // `step`: in which it turns by some 30 degrees.
 std::string close_by(const std::string& name, bool angle, double distance, double step) {
   char text[240];
@@ -69,20 +93,35 @@ std::string close_by(const std::string& name, bool angle, double distance, doubl
 
 }  // namespace
 
-TurningBack::TurningBack(const Structure& structure) : said_(structure.forces.size(), false) {
-  const auto turns_back = [](const Measure& m) {
-    if (m.nodes.empty()) return false;  // a force that acts on no measure
-    return m.kind == MeasureKind::length || (m.kind == MeasureKind::angle && !counts_turns(m));
-  };
-  for (std::size_t i = 0; i < structure.forces.size(); ++i) {
-    const Force& f = structure.forces[i];
+void TurningBack::add(Of of, std::size_t index, const std::string& name, const Measure& measure,
+                      double free) {
+  if (turns_back(measure)) terms_.push_back({of, index, name, measure, free});
+  for (const MeasureTerm& term : measure.terms)
+    if (turns_back(term.measure)) terms_.push_back({of, index, name, term.measure, never});
+}
+
+TurningBack::TurningBack(const Structure& structure) {
+  std::size_t index = 0;
+  for (const Force& f : structure.forces) {
     const bool motor = f.kind == "motor";
-    if (!motor && (f.one_sided || !(f.stiffness > 0))) continue;
-    constexpr double never = std::numeric_limits<double>::quiet_NaN();
-    if (turns_back(f.measure)) terms_.push_back({i, f.name, f.measure, motor ? never : f.rest});
-    for (const MeasureTerm& term : f.measure.terms)
-      if (turns_back(term.measure)) terms_.push_back({i, f.name, term.measure, never});
+    if (motor || (!f.one_sided && f.stiffness > 0))
+      add(Of::force, index, f.name, f.measure, motor ? never : f.rest);
+    ++index;
   }
+  for (const Constraint& c : structure.constraints) {
+    if (c.kind == "measure") add(Of::constraint, index, c.name, c.measure, never);
+    ++index;
+  }
+  for (const Stop& stop : structure.stops) {
+    const bool lower = stop.min > 0, upper = stop.max < pi;
+    if (stop.measure.kind == MeasureKind::angle ? lower || upper : lower)
+      add(Of::stop, index, stop.name, stop.measure,
+          stop.measure.kind != MeasureKind::angle || (lower && upper) ? never
+          : lower                                                     ? pi
+                                                                      : 0.0);
+    ++index;
+  }
+  said_.assign(index, false);
 }
 
 std::vector<std::string> TurningBack::between(const System& system, const State& before, const State& after) {
@@ -92,24 +131,47 @@ std::vector<std::string> TurningBack::between(const System& system, const State&
   system.expand(before.z, q);
   system.expand(after.z, later);
   for (const Term& term : terms_) {
-    if (said_[term.force]) continue;
+    if (said_[term.index]) continue;
     double size = 0;
     const Vec3 side = side_of(term.measure, q, size);
     const Vec3 there = side_of(term.measure, later, size);
     const Passage how = passage(side, there, size);
-    if (how == Passage::none) continue;
+    if (how == Passage::none || (term.of != Of::force && how == Passage::close_by)) continue;
     const bool angle = term.measure.kind == MeasureKind::angle;
     const double value = MeasureFunction(term.measure, {}).value(later.data());
     const double turn = angle && value > pi / 2 ? pi : 0.0;
     if (std::abs(turn - term.free) <= at_it) continue;
-    said_[term.force] = true;
+    said_[term.index] = true;
     told.push_back("at t = " + seconds(after.t) + ": " +
-                   (how == Passage::through
+                   (term.of == Of::constraint ? held_through(term.name, angle)
+                    : term.of == Of::stop     ? stop_missed(term.name, angle)
+                    : how == Passage::through
                         ? through(term.name, angle)
                         : close_by(term.name, angle, nearness(side, there) * (there - side).norm() / size,
                                    0.5 * nearness(side, there) * (after.t - before.t))));
   }
   return told;
+}
+
+std::string at_its_end(const Structure& structure, const System& system, const State& state, double h) {
+  VectorXd q(system.coordinates()), v(q.size());
+  system.expand(state.z, q);
+  system.expand_rate(state.w, v);
+  const auto ends = [&](const Measure& measure) {
+    if (!turns_back(measure)) return false;
+    const MeasureFunction function(measure, {});
+    std::vector<double> gradient(function.stencil().size());
+    const double value = function.value_and_gradient(q.data(), gradient.data()),
+                 there = value + 2 * h * function.rate(gradient.data(), v.data());
+    return !(there > 0) || (measure.kind == MeasureKind::angle && !(there < pi));
+  };
+  for (const Constraint& c : structure.constraints) {
+    if (c.kind != "measure") continue;
+    if (ends(c.measure)) return held_through(c.name, is_angle(c.measure));
+    for (const MeasureTerm& term : c.measure.terms)
+      if (ends(term.measure)) return held_through(c.name, is_angle(term.measure));
+  }
+  return "";
 }
 
 }  // namespace unfurl

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forces whose measure turns back where the motion goes on.
+// Forces, constraints and stops whose measure turns back where the motion goes on.
 #pragma once
 
 #include <string>
@@ -13,7 +13,8 @@ namespace unfurl {
 // A distance turns back at 0, an angle without a sign where its lines come to lie along each other. A spring
 // that is not free of force there, and a motor, then pull the other way from one moment to the next: the step
 // across that is of first order, and nothing in it shows. Nor does it where they pass close by, and the force
-// turns round within a step.
+// turns round within a step. What a constraint holds turns round, too; a stop beyond whose limit the measure
+// turns back within a step is not met.
 class TurningBack {
  public:
   explicit TurningBack(const Structure& structure);
@@ -23,15 +24,22 @@ class TurningBack {
   void archive(Archive& archive) { archive(said_); }
 
  private:
+  enum class Of { force, constraint, stop };
   struct Term {
-    std::size_t force;  // of the structure
+    Of of;
+    std::size_t index;  // in said_
     std::string name;
     Measure measure;
-    double free;  // value without a force; NaN: there is none
+    double
+        free;  // value without a force; NaN: there is none. Of a stop: where it turns back within its limits
   };
+  void add(Of of, std::size_t index, const std::string& name, const Measure& measure, double free);
 
   std::vector<Term> terms_;
-  std::vector<bool> said_;  // of the structure's forces
+  std::vector<bool> said_;  // of the structure's forces, constraints and stops
 };
+
+// That a step of h may lead a measure that a constraint holds to where it turns back, in words; empty: none.
+std::string at_its_end(const Structure& structure, const System& system, const State& state, double h);
 
 }  // namespace unfurl

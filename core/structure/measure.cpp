@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/math/twofold.hpp"
 #include "core/structure/course.hpp"
@@ -84,6 +85,21 @@ bool is_angle(const Measure& measure) {
     return std::all_of(measure.terms.begin(), measure.terms.end(),
                        [](const MeasureTerm& term) { return is_angle(term.measure); });
   return measure.kind != MeasureKind::coordinate && measure.kind != MeasureKind::length;
+}
+
+MeasureRange range_of(const Measure& measure) {
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  if (measure.kind == MeasureKind::length) return {0.0, endless};
+  if (measure.kind == MeasureKind::angle && !counts_turns(measure)) return {0.0, pi};
+  if (measure.kind != MeasureKind::combination) return {-endless, endless};
+  MeasureRange sum{0.0, 0.0};
+  for (const MeasureTerm& term : measure.terms) {
+    const MeasureRange range = range_of(term.measure);
+    const double a = term.coefficient * range.low, b = term.coefficient * range.high;
+    sum.low += std::min(a, b);
+    sum.high += std::max(a, b);
+  }
+  return sum;
 }
 
 std::vector<Measure> turning_angles(const Measure& measure) {

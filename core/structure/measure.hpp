@@ -87,6 +87,13 @@ bool counts_turns(const Measure& measure);
 // In radians: angles, and combinations of nothing else.
 bool is_angle(const Measure& measure);
 
+// Between which values a measure stays: a length above 0, an angle without an axis from 0 to pi, where they
+// turn back; sums of those; endless where nothing ends it.
+struct MeasureRange {
+  double low, high;
+};
+MeasureRange range_of(const Measure& measure);
+
 // The angles with a sign in a measure, in its order: its own, or those of its terms.
 std::vector<Measure> turning_angles(const Measure& measure);
 

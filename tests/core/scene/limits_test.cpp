@@ -152,13 +152,22 @@ TEST_CASE("drives that leave what their measure can be are refused, with the tim
   refused(length + "motion='smooth'\nto=-1\nduration=1", "to: takes the length to ");
   refused(length + "motion='table'\ntimes=[0,1,2]\nvalues=[5,-1,4]", "values: takes the length to ");
   refused(angle + "motion='rate'\nrate=50",
-          "rate: takes the angle to 180 deg at t = 1.8 s: without an axis it stays between 0 and 180 deg; "
-          "give the "
-          "axis of the hinge");
+          "rate: takes the angle to 180 deg at t = 1.8 s: without an axis the angle stays between 0 and 180 "
+          "deg; give the axis of the hinge");
+  const std::string sum = "kind='combination'\nmotion='rate'\n", ends = ", as distances stay > 0 and angles";
+  refused(sum + "terms=['2 angle A O C']\nrate=120",
+          "rate: takes the sum to 360 deg at t = 1.5 s: it stays > 0 deg and < 360 deg" + ends);
+  refused(sum + "terms=['1 length O D', '0.5 length O C']\nrate=-4",
+          "rate: takes the sum to 0 m at t = 1.438 s: it stays > 0 m" + ends);
+  refused(sum + "terms=['-1 length O D']\nrate=4",
+          "rate: takes the sum to 0 m at t = 1.25 s: it stays < 0 m");
   refused(angle + "motion='rate'\nrate=-50", "rate: takes the angle to 0 deg at t = 1.8 s: ");
   for (const std::string& fine :
        {length + "motion='rate'\nrate=-2.4", angle + "motion='rate'\nrate=44",
-        angle + "axis=[0,0,1]\nmotion='rate'\nrate=500", length + "motion='smooth'\nto=0.1\nduration=1",
+        angle + "axis=[0,0,1]\nmotion='rate'\nrate=500", sum + "terms=['2 angle A O C']\nrate=89",
+        sum + "terms=['2 angle A O C about 0 0 1']\nrate=120",
+        sum + "terms=['1 length O D', '-1 length O C']\nrate=-30",
+        length + "motion='smooth'\nto=0.1\nduration=1",
         std::string("kind='coordinate'\nnodes=['C']\ndirection=[0,1,0]\nmotion='rate'\nrate=-30")})
     CHECK(testing::error_of(with(fine), {"solver.end_time=2"}) == "");
   // What deploys may have ended before; a drive with an end of its own says where it goes.
@@ -174,6 +183,52 @@ TEST_CASE("drives that leave what their measure can be are refused, with the tim
   };
   CHECK(ring("'rate',rate=-3").empty());
   CHECK(ring("'smooth',to=-1,duration=2").find("to: takes the length to ") != std::string::npos);
+}
+
+// |x| has no way on through 0, nor an angle without a sign through 0 and 180 degrees: it turns back there, a
+// stop at such a limit would never act, and no latch would hold.
+TEST_CASE("limits at which a measure turns back are refused") {
+  const std::string angle = "kind='angle_stop'\nnodes=['A','O','C']\n",
+                    length = "kind='length_stop'\nnodes=['O','D']\n", axis = "axis=[0,0,1]\n",
+                    never =
+                        "is never met: without an axis the angle stays between 0 and 180 deg; give the "
+                        "axis of the hinge";
+  for (const char* limit : {"max=180", "max=200", "min=0", "min=-10"}) {
+    INFO(limit);
+    CHECK(said(angle + limit).find(never) != std::string::npos);
+    CHECK(said(angle + axis + limit).empty());
+  }
+  for (const char* limit : {"max=179.5", "min=0.5"}) CHECK(said(angle + limit).empty());
+  for (const char* limit : {"min=0", "min=-0.1"})
+    CHECK(said(length + limit).find("is never met: a distance stays > 0") != std::string::npos);
+  CHECK(said(length + "min=1e-6").empty());
+  const auto latched = [](const std::string& deployment, const char* at) {
+    return testing::error_of(with("kind='plane'\nnodes=['C']\nnormal=[0,0,1]\n[deployment]\n" + deployment),
+                             {std::string("solver.at_deployed=") + at});
+  };
+  const std::string measure = "measure='angle A O C'\ndeployed=";
+  for (const char* end : {"180", "0"}) {
+    CHECK(
+        latched(measure + end, "latch").find("cannot be held by a latch, as the measure turns back there") !=
+        std::string::npos);
+    CHECK(latched(measure + end, "stop").empty());
+    CHECK(latched(std::string("measure='angle A O C about 0 0 1'\ndeployed=") + end, "latch").empty());
+  }
+  for (const char* at : {"stop", "latch"}) {
+    for (const char* end : {"190", "-3"})
+      CHECK(latched(measure + end, at).find("deployed: is never reached: without an axis") !=
+            std::string::npos);
+    CHECK(latched("measure='length O D'\ndeployed=-1", at).find("is never reached: a distance stays > 0") !=
+          std::string::npos);
+  }
+  // In line at the start a sum of angles has no direction to grow in.
+  for (const char* entry : {"kind='combination'\nterms=['1 angle A O B']",
+                            "kind='gear'\nnodes=['A','O','B','A','O','C']\nradii=[1,2]",
+                            "kind='rack'\nnodes=['A','O','B','C']\nradius=0.3\ndirection=[0,1,0]"}) {
+    INFO(entry);
+    CHECK(said(entry).find("rods are in line at t = 0, where an angle without one has no direction") !=
+          std::string::npos);
+  }
 }
 
 }  // namespace limits_test

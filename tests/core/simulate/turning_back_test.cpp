@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "core/simulate/turning_back.hpp"
 #include "tests/support/scene_run.hpp"
@@ -256,6 +257,69 @@ TEST_CASE("lines that an angle without an axis passes are told with the angle th
   }
   structure.forces[0].measure.axis = Vec3(0, 0, 1);  // which counts on
   CHECK(said({1, 0.2, 0}, {1, -0.1, 0}).empty());
+}
+
+// What a rack holds turns round with its pinion's angle; two stages of a tube that share its extension have
+// no motion on where one of them is nothing.
+TEST_CASE("constraints whose measure turns back are named") {
+  const std::string rack = R"(
+[structure]
+kind = "custom"
+nodes = [
+  {name = "E", position = [-1, 0, 0], fixed = true}, {name = "O", position = [0, 0, 0], fixed = true},
+  {name = "T", position = [0, 1, 0], velocity = [2, 0, 0], mass = 1},
+  {name = "D", position = [0, 0, 1], velocity = [0.6, 0, 0], mass = 1}]
+rods = [{nodes = ["O", "T"], mass = 0}]
+constraints = [{kind = "plane", nodes = ["T"], normal = [0, 0, 1]},
+               {kind = "line", nodes = ["D"], direction = [1, 0, 0]}]
+[[constraints]]
+kind = "rack"
+name = "pinion"
+nodes = ["E", "O", "T", "D"]
+radius = 0.3
+direction = [1, 0, 0]
+[solver]
+step = 0.01
+end_time = 1.2
+)";
+  const char* told = "the rods of pinion pass through one line";
+  CHECK(said(run_scene(rack), told) == 1);
+  CHECK(said(run_scene(rack, {"constraints[0].axis=[0, 0, 1]"}), told) == 0);
+  const std::string tube = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [0.8, 0.6, 0], velocity = [-0.4, -0.3, 0], mass = 0.5},
+         {name = "C", position = [1.2, 0.9, 0], velocity = [-0.8, -0.6, 0], mass = 0.7}]
+constraints = [{kind = "line", nodes = ["C"], direction = [0.8, 0.6, 0]}]
+[[constraints]]
+kind = "telescope"
+name = "tube"
+nodes = ["A", "B", "C"]
+[solver]
+step = 0.013
+end_time = 2
+)";
+  const Simulation run = run_scene(tube);
+  CHECK(run.message.find("a length of tube (stages 1, 2) falls to 0 and turns back") != std::string::npos);
+  CHECK(run.message.find("smaller solver.step") == std::string::npos);
+  CHECK(run_scene(tube, {"solver.end_time=0.4"}).status == RunStatus::completed);
+}
+
+TEST_CASE("a stop beyond whose limit an angle turns back within a step is told of") {
+  const Vec3 along(1.3, 0, 0);
+  const auto said = [&](double min, double max, double side, MeasureKind kind = MeasureKind::angle) {
+    Structure s = loose_structure();
+    s.forces.clear();
+    s.stops.push_back({.name = "end", .measure = {kind, {0, 1, 2, 3}, Vec3::Zero(), 0.0, {}}});
+    s.stops[0].min = min, s.stops[0].max = max;
+    return Told(s).said({side, 0.2, 0}, {side, -0.1, 0}, along).size();
+  };
+  const double none = std::numeric_limits<double>::infinity();
+  CHECK(said(-none, 3.1, -1) == 1);  // 180 degrees are beyond
+  CHECK(said(-none, 3.1, 1) == 0);
+  CHECK(said(0.1, none, 1) == 1);
+  CHECK(said(0.1, none, -1) == 0);
+  for (const double side : {1.0, -1.0}) CHECK(said(0.1, 3.1, side) == 1);
 }
 
 }  // namespace turning_back_test
