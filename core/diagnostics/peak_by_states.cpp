@@ -74,7 +74,8 @@ PeakInMotion by_states(const Simulation& run, const std::vector<double>& x, cons
     }
     begin = std::max(begin, top.t - apart), end = std::min(end, top.t + apart);
   }
-  return top;
+  // They say that what was found is too much; a polynomial that goes beyond it swings.
+  return top.value <= found.value ? top : found;
 }
 
 }  // namespace unfurl

@@ -223,7 +223,7 @@ std::vector<std::size_t> candidates(const Trajectory& run, const std::vector<dou
       reach = std::max(reach, vertex({run.time(middle - 1), run.time(middle), run.time(middle + 1)},
                                      {x[middle - 1], x[middle], x[middle + 1]})
                                   .value);
-    if (reach >= best) found.push_back({reach, i});
+    if (2 * reach - x[i] >= best) found.push_back({reach, i});  // values may bend more than a parabola does
     const double corner =
         std::fmax(i > 0 ? corner_in(x, i - 1, leads, time).value : best, corner_in(x, i, leads, time).value);
     if (corner > best) corners.push_back({corner, i});

@@ -228,4 +228,46 @@ end_time = 2
     }
 }
 
+// A bob hangs on a clearance pin below a cable over a slider, whose friction on it turns round beside the
+// peak: a polynomial through the states there swings. What is told must be the force at the time that is
+// told.
+TEST_CASE("a peak is the force of the motion at its time") {
+  const std::string slider = R"(
+variables = {x = 0.24298444666592509, z = -0.9823963348254381, u = 0.6362824357890278}
+[structure]
+kind = "custom"
+nodes = [{name = "P", position = [0, 0, 0], fixed = true}, {name = "Q", position = ["=x", 0, "=z"], mass = 0.97},
+  {name = "S", position = ["=u*x", 0, "=u*z"], mass = 1.32}, {name = "C", position = ["=u*x", 0, "=u*z"], mass = 0.4},
+  {name = "D", position = ["=u*x+0.34", 0, "=u*z-0.4"], mass = 0.6}]
+rods = [{nodes = ["P", "Q"], mass = 1.2}, {nodes = ["C", "D"], mass = 0.2}]
+constraints = [{kind = "collinear", nodes = ["P", "Q", "S"]},
+               {kind = "plane", nodes = ["Q", "C", "D"], normal = [0, 1, 0]}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[[forces]]
+kind = "cable"
+nodes = ["P", "S", "D"]
+axial_stiffness = 575.4
+length = 1.065
+damping = 2
+pulley_friction = 0.12
+[[constraints]]
+kind = "clearance"
+nodes = ["S", "C"]
+clearance = 0.01
+[solver]
+end_time = 0.5
+stages = 4
+)";
+  for (int k = 0; k < 29; ++k) {
+    const double step = 0.0009 + 0.000025 * k;
+    INFO(step);
+    const Simulation run = testing::run_scene(slider, {"solver.step=" + std::to_string(step)});
+    const PeakInMotion peak = extreme_of_column(run, diagnose(run), "axial_force_min_N", false);
+    const VectorXd there = rod_forces_within_step(run, peak.t);
+    REQUIRE(there.size() == 2);
+    CHECK(there.minCoeff() == Approx(peak.value).epsilon(1e-4));
+  }
+}
+
 }  // namespace short_peaks_test

@@ -262,7 +262,7 @@ TEST_CASE("drives that leave what their measure can be are refused with the time
                 "constraints[0].rate: takes the length to "));
   CHECK(refused(
       constraint("kind = 'angle'\nnodes = ['P', 'O', 'A']\nmotion = 'smooth'\nto = 190\nduration = 0.1"),
-      "without an axis it stays between 0 and 180 deg; give the axis of the hinge"));
+      "without an axis the angle stays between 0 and 180 deg; give the axis of the hinge"));
   CHECK(refused(constraint("kind = 'angle_stop'\nnodes = ['P', 'O', 'A']\nmax = 190"),
                 "constraints[0].max: is never met"));
   // Not within the run.
