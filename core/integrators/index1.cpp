@@ -93,8 +93,14 @@ void Index1::settle(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) {
     saddle_.solve(f, g, x, y, refinements_);
 }
 
-bool Index1::correct(const State& state, std::span<VectorXd> lambdas) {
+const VectorXd& Index1::applied_force(const State& state) {
+  place(state.t, state.z, state.w, state.tension);
+  return force_;
+}
+
+bool Index1::correct(const State& state, std::span<VectorXd> lambdas, const VectorXd& applied) {
   if (!assemble(state.t, state.z, state.w, state.tension)) return false;
+  if (applied.size() > 0) force_ = applied;
   const Index n = state.w.size(), m = bias_.size();
   VectorXd acceleration(n), change(m), force(n), rate(m);
   for (VectorXd& lambda : lambdas) {

@@ -35,7 +35,10 @@ class Index1 {
   bool evaluate_at_rest(State state, MutVec acceleration, MutVec lambda);
   // Where G has lost rank: the multipliers that the equations determine, next to those given, of which the
   // rest is kept; for each of `lambdas`. Directions of singular values below some 1e-7 count as lost.
-  bool correct(const State& state, std::span<VectorXd> lambdas);
+  // `applied`: what acts, where that is not what the state says.
+  bool correct(const State& state, std::span<VectorXd> lambdas, const VectorXd& applied = {});
+  // What acts in a state, in its solved coordinates.
+  const VectorXd& applied_force(const State& state);
   // evaluate() at a state next to a pose where the rank falls, x from it, and how far each multiplier may be
   // off. The state is moved onto the constraints first, as far as round-off lets it: what its step left there
   // may be more. `doubt`, from above: the answer of the multipliers, to first order, to an error as large as

@@ -356,18 +356,26 @@ class Locator {
 
 namespace {
 
-// Nothing, and the values at zero of the polynomials through sine^power times the multipliers, by degrees.
-std::vector<VectorXd> multiplier_fits(const std::vector<NearDeployed>& samples, int power) {
-  const VectorXd none = VectorXd::Zero(samples.front().state.lambda.size());
+// Nothing, and the values at zero of the polynomials through some values of the samples, by degrees.
+std::vector<VectorXd> fits_of(const std::vector<NearDeployed>& samples, const std::vector<VectorXd>& values) {
+  const VectorXd none = VectorXd::Zero(values.front().size());
   std::vector<VectorXd> fits{none};
   for (int degree = 0; degree < static_cast<int>(samples.size()); ++degree) {
     const VectorXd shares = shares_at_zero(samples, degree);
     VectorXd sum = none;
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      sum += shares[static_cast<Index>(i)] * std::pow(samples[i].sine, power) * samples[i].state.lambda;
+    for (std::size_t i = 0; i < samples.size(); ++i) sum += shares[static_cast<Index>(i)] * values[i];
     fits.push_back(std::move(sum));
   }
   return fits;
+}
+
+// Of sine^power times the multipliers.
+std::vector<VectorXd> multiplier_fits(const std::vector<NearDeployed>& samples, int power) {
+  std::vector<VectorXd> values;
+  values.reserve(samples.size());
+  for (const NearDeployed& sample : samples)
+    values.push_back(std::pow(sample.sine, power) * sample.state.lambda);
+  return fits_of(samples, values);
 }
 
 // The fit that changes least from the one of a degree less, by less than `most`; 0: none does.
@@ -396,12 +404,27 @@ VectorXd pole(const std::vector<NearDeployed>& samples) {
   return fits[best];
 }
 
+// What acts just before the deployed pose, where that is not what acts in it: dampers of hinges whose rods
+// are in line there, all of them or those that rounding has put so, act about no axis. Empty where it is.
+VectorXd other_force_before(Index1& index1, const std::vector<NearDeployed>& samples, const State& at) {
+  constexpr double other = 1e-7, known = 0.1;  // shares of what acts, and of the difference
+  std::vector<VectorXd> values;
+  values.reserve(samples.size());
+  for (const NearDeployed& sample : samples) values.push_back(index1.applied_force(sample.state));
+  const std::vector<VectorXd> fits = fits_of(samples, values);
+  const std::size_t best = settled_fit(fits, std::numeric_limits<double>::infinity());
+  const VectorXd& here = index1.applied_force(at);
+  const double off = (fits[best] - here).norm();
+  if (!(off > other * here.norm()) || !((fits[best] - fits[best - 1]).norm() < known * off)) return {};
+  return fits[best];
+}
+
 }  // namespace
 
-// What acts in the deployed pose itself may not be what acts just before it (dampers of hinges whose rods are
-// in line there, about no axis): where fits that settle by themselves say something else than those that the
-// equations have corrected, they are right. Where multipliers grow without bound, the equations of the pose
-// lack what is left of them times a Jacobian that vanishes.
+// By the equations of the pose, with what acts just before it. Beyond that, where fits that settle by
+// themselves say something else than those that the equations have corrected, they are right. Where
+// multipliers grow without bound, the equations of the pose lack what is left of them times a Jacobian that
+// vanishes.
 VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at) {
   constexpr double something_else = 1e-3, grows = 1e-4, wild = 10;
   const VectorXd c = pole(samples);
@@ -415,7 +438,7 @@ VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> sampl
     return (c.array().abs() > least).select(std::numeric_limits<double>::quiet_NaN(), rest);
   }
   std::vector<VectorXd> fits = own;
-  index1.correct(at, fits);
+  index1.correct(at, fits, other_force_before(index1, samples, at));
   const std::size_t best = settled_fit(fits, most_open * fits[0].norm());
   // Where the pose is so near to losing more of its rank that the equations say anything, they are left out.
   double next_to = 0;
