@@ -239,7 +239,7 @@ std::string without_bound(const Trajectory& run) {
 
 }  // namespace
 
-std::string rise_on_the_way(const Simulation& run, const Diagnostics& d) {
+Rise rise_on_the_way(const Simulation& run, const Diagnostics& d) {
   if (std::ranges::none_of(run.events, [](const Event& e) { return e.kind == "singular_pose"; })) return {};
   const RememberedExtremes once;
   const PeakInMotion most = extreme_of_column(run, d, "axial_force_max_N", true),
@@ -253,7 +253,22 @@ std::string rise_on_the_way(const Simulation& run, const Diagnostics& d) {
        << " grows without bound towards a singular pose beside t = " << peak.t
        << " s, which is passed on the way: its peak there, and what follows from it, is that of the nearest "
           "pose that was looked at, and larger with shorter steps";
-  return text.str();
+  return {text.str(), peak.t, std::abs(peak.force_N)};
+}
+
+std::size_t first_unstretched(const Simulation& run, const Diagnostics& d) {
+  const Trajectory& trajectory = run.trajectory;
+  const std::vector<Rod>& rods = trajectory.structure().rods;
+  const auto bears = [&](std::size_t i) {
+    for (std::size_t r = 0; r < rods.size(); ++r)
+      if (std::isfinite(rods[r].youngs_modulus) && rods[r].area > 0 &&
+          std::abs(d.axial_force(static_cast<Index>(i), static_cast<Index>(r))) > 0)
+        return true;
+    return false;
+  };
+  for (std::size_t i = 0; i < d.t.size(); ++i)
+    if (const VectorXd* u = trajectory.stretch(i); u && u->isZero(0) && bears(i)) return i;
+  return d.t.size();
 }
 
 namespace {
@@ -315,8 +330,15 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
   }
   if (std::string text_of_forces = without_bound(run.trajectory); !text_of_forces.empty())
     warnings.push_back(std::move(text_of_forces));
-  if (std::string on_the_way = rise_on_the_way(run, d); !on_the_way.empty())
-    warnings.push_back(std::move(on_the_way));
+  if (Rise rise = rise_on_the_way(run, d); !rise.text.empty()) warnings.push_back(std::move(rise.text));
+  if (const std::size_t first = first_unstretched(run, d); first < d.t.size()) {
+    text.str("");
+    text << "near t = " << d.t[first]
+         << " s, as where rods lie in line, the quasi-static rods would have to be moved farther than their "
+            "lengths allow: such states are shown without what the rods give, and those beside them are no "
+            "small displacements; structure.rod_model = \"elastic\" finds them";
+    warnings.push_back(text.str());
+  }
   return warnings;
 }
 

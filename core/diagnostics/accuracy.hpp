@@ -41,9 +41,17 @@ std::string mistrust(const Simulation& run, const Diagnostics& diagnostics);
 // to be trusted blindly. Each text names the size and the cure; empty where nothing is wrong.
 std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnostics& diagnostics);
 
-// Of a run that goes through singular poses, whether the force of a rod grows without bound there; empty
-// where none does.
-std::string rise_on_the_way(const Simulation& run, const Diagnostics& diagnostics);
+// Of a run that goes through singular poses, whether the force of a rod grows without bound there, and when
+// its largest is; no text where none does.
+struct Rise {
+  std::string text = {};
+  double t = 0, force_N = 0;  // [s]; its size
+};
+Rise rise_on_the_way(const Simulation& run, const Diagnostics& diagnostics);
+
+// The first state of quasi-static rods that is shown without what they give, though they bear something; the
+// number of states where there is none.
+std::size_t first_unstretched(const Simulation& run, const Diagnostics& diagnostics);
 
 // What was said while it ran, and that. Without diagnostics (of no state) the former alone.
 std::vector<std::string> warnings_of(const Simulation& run, const Diagnostics& diagnostics);

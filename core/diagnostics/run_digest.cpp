@@ -158,6 +158,7 @@ Diagnostics RunDigest::add(Simulation& window, std::size_t first, std::size_t la
   } else if (part.states > before || doubt_.empty()) {
     good_ = all_;
     keep_states(std::max<std::size_t>(part.states, 1), good_.run, good_.diagnostics);
+    note_rise(good_);
     good_ = thinned(good_);
     doubt_ = part.text(all_.diagnostics);
   }
@@ -199,10 +200,14 @@ bool RunDigest::look_at_seam(const Simulation& window, const Diagnostics& d, std
   Trajectory& kept = kept_.run.trajectory;
   const double speed = fastest(kept, kept.size() - 1);
   if (!(top > most && speed > 0)) return found;
-  State state = kept.state(kept.size() - 1);
+  const std::size_t at = kept.size() - 1;
+  State state = kept.state(at);
   state.w *= top / speed;
+  const VectorXd* const shown = kept.stretch(at);
+  const VectorXd u = shown ? *shown : VectorXd();
   kept.pop_back();
   kept.append(std::move(state), StepReport{.singular_event = true});
+  if (u.size() > 0) kept.add_stretch(at, u);
   return true;
 }
 
@@ -256,28 +261,38 @@ Digest RunDigest::with_rows(const Digest& before, const Simulation& window, cons
   return out;
 }
 
-// In the coordinates of the model at the start; nothing is looked for around these states any more.
+// In the coordinates of the model at the start; nothing is looked for around these states any more. What was
+// found beside the last state stands at the one before: the last is the end of what a digest says.
 Digest RunDigest::thinned(const Digest& all) const {
   const Trajectory& trajectory = all.run.trajectory;
   const Diagnostics& d = all.diagnostics;
-  std::set<std::size_t> rows{0, d.t.size() - 1};
+  const std::size_t last = d.t.size() - 1;
+  std::set<std::size_t> rows{0, last};
+  const auto row_for = [&](std::size_t row, bool of_state) {
+    if (row == last && !of_state && last > 0) --row;
+    rows.insert(row);
+    return row;
+  };
   std::vector<std::pair<std::size_t, double>>
       found[2];  // row and value of every column, largest and smallest
   for (const Series& column : d.columns)
     for (const bool largest : {true, false}) {
-      const std::size_t row = row_of_largest(column.values, largest ? 1.0 : -1.0);
+      std::size_t row = row_of_largest(column.values, largest ? 1.0 : -1.0);
       double value = row < column.values.size() ? column.values[row] : 0.0;
-      if (row < column.values.size()) rows.insert(row);
       if (row < column.values.size() && looked_for(column.name)) {
         const double x = largest ? largest_of_column(all.run, d, column.name)
                                  : smallest_of_column(all.run, d, column.name);
         if (std::isfinite(x)) value = x;
       }
+      if (row < column.values.size()) row = row_for(row, value == column.values[row]);
       found[largest ? 0 : 1].emplace_back(row, value);
     }
-  const auto peaks = peaks_of_rods(all.run, d);
+  auto peaks = peaks_of_rods(all.run, d);
+  for (auto& [row, peak] : peaks)
+    row = row_for(row, peak.force_N == d.axial_force(static_cast<Index>(row), peak.rod));
   for (std::size_t i = 0; i < trajectory.size(); ++i)
     if (without_forces(trajectory, i)) rows.insert(i);
+  if (const std::size_t first = first_unstretched(all.run, d); first < d.t.size()) rows.insert(first);
   add_rods(trajectory.structure(), d, rows);
   add_rise(d.at("energy_balance_J").values, rows);
   std::size_t quickest = 0;
@@ -285,7 +300,8 @@ Digest RunDigest::thinned(const Digest& all) const {
   for (std::size_t i = 0; i < trajectory.size(); ++i)
     if (const double v = fastest(trajectory, i); v > speed) speed = v, quickest = i;
   const double top = find_measure("peak_speed").value(all.run, d);
-  rows.insert(quickest);
+  quickest = row_for(quickest, !(top > speed));
+  speed = fastest(trajectory, quickest);
   Digest out = empty();
   out.run.events = all.run.events;
   out.diagnostics.columns = d.columns;
@@ -301,6 +317,8 @@ Digest RunDigest::thinned(const Digest& all) const {
     state.tension.resize(0), state.tension_error.resize(0);
     state.stage_tension.resize(0, 0);
     out.run.trajectory.append(std::move(state), StepReport{.singular_event = true});
+    if (const VectorXd* u = trajectory.stretch(i))
+      out.run.trajectory.add_stretch(out.run.trajectory.size() - 1, *u);
     out.diagnostics.t.push_back(d.t[i]);
     for (std::size_t c = 0; c < d.columns.size(); ++c) {
       double value = d.columns[c].values[i];
@@ -322,28 +340,37 @@ Digest RunDigest::thinned(const Digest& all) const {
 
 Digest RunDigest::whole(const Simulation& last_window) const {
   Digest out = all_;
-  if (!rise_.empty() && rise_on_the_way(out.run, out.diagnostics).empty()) out.run.warnings.push_back(rise_);
-  if (doubt_.empty()) return out;
-  const std::size_t before = kept_.run.trajectory.size();
-  if (trusted_ > 0) {
-    keep_states(before + trusted_, out.run, out.diagnostics);
-  } else {
-    const Digest end = std::move(out);
-    out = good_;
-    out.run.steps = end.run.steps;
-    out.run.newton_iterations = end.run.newton_iterations;
-    out.run.cpu_s = end.run.cpu_s;
-    out.run.warnings = end.run.warnings;
+  if (!doubt_.empty()) {
+    if (trusted_ > 0) {
+      keep_states(kept_.run.trajectory.size() + trusted_, out.run, out.diagnostics);
+    } else {
+      const Digest end = std::move(out);
+      out = good_;
+      out.run.steps = end.run.steps;
+      out.run.newton_iterations = end.run.newton_iterations;
+      out.run.cpu_s = end.run.cpu_s;
+      out.run.warnings = end.run.warnings;
+    }
+    out.run.status = last_window.status;
+    out.run.message = last_window.message;
+    fail_for(doubt_, out.run);
   }
-  out.run.status = last_window.status;
-  out.run.message = last_window.message;
-  fail_for(doubt_, out.run);
+  const auto rise = std::find_if(rises_.rbegin(), rises_.rend(),
+                                 [&](const Rise& r) { return r.t <= out.run.trajectory.end_time(); });
+  if (rise != rises_.rend() && rise_on_the_way(out.run, out.diagnostics).text.empty())
+    out.run.warnings.push_back(rise->text);
   return out;
+}
+
+void RunDigest::note_rise(const Digest& rows) {
+  Rise rise = rise_on_the_way(rows.run, rows.diagnostics);
+  if (!rise.text.empty() && (rises_.empty() || rise.force_N > rises_.back().force_N))
+    rises_.push_back(std::move(rise));
 }
 
 void RunDigest::settle() {
   const RememberedExtremes once;
-  if (rise_.empty()) rise_ = rise_on_the_way(all_.run, all_.diagnostics);
+  note_rise(all_);
   kept_ = thinned(all_);
   all_ = empty();
 }
@@ -355,7 +382,15 @@ void RunDigest::archive(Archive& archive) {
   archive(ends_);
   archive(known_);
   archive_events(archive, singular_);
-  archive(rise_);
+  std::size_t rises = rises_.size();
+  archive(rises);
+  if (rises > archive.bytes().size()) throw ArchiveError("ends too early");
+  rises_.resize(rises);
+  for (Rise& rise : rises_) {
+    archive(rise.text);
+    archive(rise.t);
+    archive(rise.force_N);
+  }
 }
 
 void RunDigest::archive_digest(Archive& archive, Digest& digest) const {
@@ -368,7 +403,12 @@ void RunDigest::archive_digest(Archive& archive, Digest& digest) const {
     if (!archive.reading()) state = digest.run.trajectory.state(i);
     archive(state.t);
     for (VectorXd* x : {&state.z, &state.w, &state.lambda, &state.angles}) archive(*x);
-    if (archive.reading()) digest.run.trajectory.append(std::move(state), StepReport{.singular_event = true});
+    VectorXd u;
+    if (const VectorXd* shown = archive.reading() ? nullptr : digest.run.trajectory.stretch(i)) u = *shown;
+    archive(u);
+    if (!archive.reading()) continue;
+    digest.run.trajectory.append(std::move(state), StepReport{.singular_event = true});
+    if (u.size() > 0) digest.run.trajectory.add_stretch(i, std::move(u));
   }
   archive(d.t);
   archive(columns);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/simulate/parts.hpp"
@@ -48,6 +49,7 @@ class RunDigest {
   Digest thinned(const Digest& all) const;
   void count_on(Diagnostics& d, std::size_t first);
   void add_events(const Simulation& window, double until);
+  void note_rise(const Digest& rows);
   void archive_digest(Archive& archive, Digest& digest) const;
   Digest empty() const;
 
@@ -60,7 +62,8 @@ class RunDigest {
   std::vector<double> ends_;  // of every column, at the last state
   KnownUniqueness known_;     // of the present model's forces
   std::vector<Event> singular_;
-  std::string rise_;  // rise_on_the_way() of windows before the last
+  std::vector<Rise>
+      rises_;  // of windows before the last, and of what can be trusted: each the largest so far
 };
 
 }  // namespace unfurl

@@ -118,6 +118,8 @@ class StretchedRun {
     for (const auto& [i, doubt] : odd) interpolate(i, doubt);
     for (std::size_t i = 1; i < u_.size(); ++i)
       if (!own[i]) u_[i] = limit(i);
+    for (std::size_t i = 0; i < u_.size(); ++i)
+      if (!is_small(i)) u_[i].setZero();
     return std::move(u_);
   }
 
@@ -218,6 +220,22 @@ class StretchedRun {
       if (least <= rough * size(i - 1)) break;
     }
     return best;
+  }
+
+  // Of first order in what rods are longer by: what is of second order in the displacement, how far it turns
+  // them, makes none of them longer by more than the largest of that. Next to a pose in which rods lie in
+  // line, where the displacement is 1 / sine, it would.
+  bool is_small(std::size_t i) const {
+    const VectorXd q = trajectory_.node_positions(i);
+    double first = 0, second = 0;
+    for (const Rod& rod : trajectory_.model(i).structure.rods) {
+      const Vec3 along = q.segment<3>(3 * rod.b) - q.segment<3>(3 * rod.a),
+                 u = u_[i].segment<3>(3 * rod.b) - u_[i].segment<3>(3 * rod.a);
+      const double longer = along.normalized().dot(u);
+      first = std::max(first, std::abs(longer));
+      second = std::max(second, (u.squaredNorm() - longer * longer) / (2 * along.norm()));
+    }
+    return second <= first;
   }
 
   double size(std::size_t i) const { return u_[i].lpNorm<Eigen::Infinity>(); }

@@ -15,7 +15,8 @@ namespace unfurl {
 // Poses at which the rank falls take the displacement of the state before, u being infinite there.
 // Next to such a pose the weakest direction makes of the states' round-off as much as it makes of C lambda:
 // what is not smooth there is the polynomial through the states on either side that are not in doubt, or the
-// nearest where they are on one side only, as far as round-off explains that u differs from it.
+// nearest where they are on one side only, as far as round-off explains that u differs from it. Where u is no
+// small displacement, as next to such poses, nothing is added (accuracy_warnings() says so).
 void add_stretch(Trajectory& trajectory);
 
 }  // namespace unfurl
