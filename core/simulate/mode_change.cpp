@@ -162,8 +162,7 @@ class Change {
 
   // The stops that are approached, all at once. False where there is no answer.
   bool strike(const PushResponses& responses, const std::function<bool(std::size_t, double)>& rests) {
-    VectorXd u = responses.rates(out_.state.w), b = u, low = VectorXd::Zero(count()), high = low;
-    bool any = false;
+    VectorXd u = responses.rates(out_.state.w), b = u, low = VectorXd::Zero(count()), high = low, hit = low;
     for (Index r = 0; r < count(); ++r) {
       const std::size_t i = side(r);
       if (!sides_.is_stop(i)) continue;
@@ -175,10 +174,11 @@ class Change {
         if (-u[r] <= std::max(sides_.stops()[i].rest_speed, 1e-9 * sides_.fastest(i, out_.state))) continue;
         return fail_at(r);
       }
-      any = struck_[static_cast<std::size_t>(r)] = true;
+      struck_[static_cast<std::size_t>(r)] = true;
+      hit[r] = 1.0;
       if (!sides_.active(i) && !rests(i, -u[r])) b[r] += sides_.stops()[i].restitution * u[r];
     }
-    if (!any) return true;
+    if (hit.isZero(0)) return true;
     // Two stops on either side of what hardly moves: whether it leaves the one as fast as it meets the other
     // is known as well as its rates are.
     VectorXd of_rates(count());
@@ -198,10 +198,11 @@ class Change {
     const double fastest = out_.state.w.lpNorm<Eigen::Infinity>();
     responses.give(impulses->x, out_.state.w);
     if (out_.state.w.lpNorm<Eigen::Infinity>() <= all_stopped * fastest) out_.state.w.setZero();
-    const VectorXd after = responses.rates(out_.state.w);
+    // What is pushed unstruck, as a stop that is being left, gives or takes, too: a share of each impact.
+    const VectorXd lost = -0.5 * impulses->x.cwiseProduct(u + responses.rates(out_.state.w));
+    const double of_struck = lost.dot(hit), share = of_struck > 0 ? lost.sum() / of_struck : 1.0;
     for (Index r = 0; r < count(); ++r)
-      if (struck_[static_cast<std::size_t>(r)])
-        out_.impacts.push_back({side(r), -0.5 * impulses->x[r] * (u[r] + after[r]), sides_.active(side(r))});
+      if (hit[r] > 0) out_.impacts.push_back({side(r), share * lost[r], sides_.active(side(r))});
     return true;
   }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // End stops: impacts, rest and release against closed forms.
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -426,6 +427,41 @@ step = 0.01
     CHECK(x[3] == Approx(1).margin(1e-12));
     CHECK(x[6] == Approx(5.1).margin(1e-12));
   }
+}
+
+// Four beads on a line fall on each other. Whatever is pushed in an impact, all that it takes is told once:
+// by the events, and by the kinetic energy before and after.
+TEST_CASE("what events lose in impacts is what the motion loses, also where a stop is pushed back onto") {
+  std::string text =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = [5, 0, -1], fixed = true}, "
+      "{name = 'W', position = [0, 0, -1], fixed = true}";
+  const std::array<const char*, 4> heights{"0.3782089527552109", "0.6501090039228181", "0.8501090039228181",
+                                           "1.3362843506811743"},
+      masses{"2.0600294188979573", "1.2261345690586174", "2.299845509502136", "1.3021523026032744"},
+      velocities{"-1.4654385601661282", "-1.142077118635198", "0", "-0.9799377305445218"},
+      bounces{"0", "0", "0.3", "0"};
+  std::string stops;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::string m = "M" + std::to_string(k);
+    text += ", {name = '" + m + "', position = [0, 0, " + heights[k] + "], mass = " + masses[k] +
+            ", velocity = [0, 0, " + velocities[k] + "]}";
+    stops += "[[structure.constraints]]\nkind = 'line'\nnodes = ['" + m +
+             "']\ndirection = [0, 0, 1]\n[[constraints]]\nkind = 'coordinate_stop'\nname = 's" +
+             std::to_string(k) + "'\nnodes = [" + (k > 0 ? "'M" + std::to_string(k - 1) + "', " : "") + "'" +
+             m + "']\ndirection = [0, 0, 1]\nmin = " + (k > 0 ? "0.2" : "0") +
+             "\nrestitution = " + bounces[k] + "\n";
+  }
+  const Simulation run = testing::run_scene(
+      text + "]\nrods = [{nodes = ['O', 'W'], mass = 1}]\n" + stops +
+      "[[forces]]\nkind = 'load_over_time'\nnodes = ['M3']\nforce = [0, 0, 8.297512479588676]\n"
+      "times = [0.3, 0.3, 0.6]\nvalues = [0, 1, -1]\n[gravity]\nacceleration = [0, 0, -9.81]\n"
+      "[solver]\nstep = 0.005\nend_time = 1\n");
+  REQUIRE(run.status == RunStatus::completed);
+  double told = 0;
+  for (const Event& event : run.events) told += event.energy_lost;
+  const Diagnostics d = diagnose(run);
+  CHECK(testing::largest(d, "energy_balance_J") < 1e-9);
+  CHECK(told == Approx(d.at("impact_loss_J").values.back()).epsilon(1e-9));  // 36 J
 }
 
 }  // namespace stop_test
