@@ -199,6 +199,57 @@ bool every_state_has(std::string_view column) {
          std::find(names.begin(), names.end(), column) != names.end();
 }
 
+// The column that says whether this one is unique, state by state; empty where none does.
+std::string flag_column(std::string_view column) {
+  if (column == "axial_force_max_N" || column == "axial_force_min_N")
+    return std::string(column.substr(0, column.size() - 2)) + "_unique";
+  for (const std::string_view end :
+       {".torque_N_m", ".force_N", ".reaction_N", ".reaction_x_N", ".reaction_y_N", ".reaction_z_N"})
+    if (column.ends_with(end)) {
+      const std::size_t dot = column.size() - end.size();
+      return std::string(column.substr(0, column.find('_', dot))) + "_unique";
+    }
+  return {};
+}
+
+bool of_stress(std::string_view column) {
+  return column == "axial_stress_max_Pa" || column == "axial_stress_min_Pa";
+}
+
+// The same of every state; of a stress whether the force of the rod is that has it.
+std::vector<double> flags_of(const Structure& structure, const Diagnostics& d, std::string_view column) {
+  if (!of_stress(column)) {
+    const Series* flags = d.find(flag_column(column));
+    return flags ? flags->values : std::vector<double>();
+  }
+  const double sign = column == "axial_stress_max_Pa" ? 1.0 : -1.0;
+  std::vector<double> flags(d.t.size(), 1.0);
+  for (Index i = 0; i < d.axial_force.rows(); ++i) {
+    double most = -std::numeric_limits<double>::infinity();
+    for (Index r = 0; r < d.axial_force.cols(); ++r) {
+      const double stress = axial_stress(structure.rods[static_cast<std::size_t>(r)], d.axial_force(i, r));
+      if (!d.shows(r) || !(sign * stress > most)) continue;
+      most = sign * stress;
+      flags[static_cast<std::size_t>(i)] = d.force_unique(i, r) ? 1.0 : 0.0;
+    }
+  }
+  return flags;
+}
+
+// Of an extreme of a column over the motion: it has a bound, and is unique at the states around it.
+double extreme_unique(const Simulation& run, const Diagnostics& d, std::string_view column, bool largest) {
+  const std::vector<double> flags = flags_of(run.trajectory.structure(), d, column);
+  if (!d.whole() || flags.empty() || !d.find(column)) return no_value;
+  const PeakInMotion top = extreme_of_column(run, d, column, largest);
+  if (std::isnan(top.value)) return no_value;
+  auto first = std::lower_bound(d.t.begin(), d.t.end(), top.t), last = first;
+  if (first != d.t.begin() && (first == d.t.end() || *first > top.t)) --first;
+  while (last != d.t.end() && (last == first || *last <= top.t)) ++last;
+  if (last != d.t.end() && *first < top.t) ++last;
+  const auto flag = [&](auto at) { return flags.begin() + (at - d.t.begin()); };
+  return top.bounded && std::all_of(flag(first), flag(last), [](double x) { return x != 0.0; }) ? 1.0 : 0.0;
+}
+
 std::string with_unit(std::string_view label, std::string_view unit) {
   return std::string(label) + (unit.empty() ? "" : " (" + std::string(unit) + ")");
 }
@@ -248,24 +299,31 @@ std::span<const NamedMeasure> named_measures() {
 bool may_be(const RunMeasure& measure, double value, bool deployed) {
   if (measure.name == "deploy_time") return !(value < 0) && (!deployed || std::isfinite(value));
   const std::size_t colon = measure.name.find(':');
+  if (measure.name.ends_with("_unique")) return std::isnan(value) || value == 0 || value == 1;
   if (colon != std::string::npos)
     return std::isfinite(value) || !every_state_has(std::string_view(measure.name).substr(colon + 1));
-  if (measure.name.ends_with("_unique")) return std::isnan(value) || value == 0 || value == 1;
   return !every_run_has(measure.name) || (std::isfinite(value) && value >= 0);
 }
 
 std::string uniqueness_of(std::string_view measure) {
   const std::string name = std::string(measure) + "_unique";
+  if (const std::size_t colon = measure.find(':'); colon != std::string_view::npos) {
+    const std::string_view of = measure.substr(colon + 1);
+    if (measure.starts_with("max:") && of == "stress_ratio_max") return "stress_margin_unique";
+    if (measure.starts_with("max:") && of == "buckling_ratio_max") return "buckling_margin_unique";
+    if (of_stress(of) && !measure.starts_with("final:")) return name;
+    const std::string flag = flag_column(of);
+    return flag.empty() ? "" : measure.starts_with("final:") ? "final:" + flag : name;
+  }
   const bool known = std::any_of(measure_table.begin(), measure_table.end(),
                                  [&](const NamedMeasure& m) { return m.name == name; });
   return known ? name : "";
 }
 
 bool may_have_no_bound(std::string_view measure) {
-  if (!uniqueness_of(measure).empty()) return true;
   const std::size_t colon = measure.find(':');
-  return colon != std::string_view::npos && !measure.starts_with("final:") &&
-         force_column(measure.substr(colon + 1));
+  if (colon == std::string_view::npos) return !uniqueness_of(measure).empty();
+  return !measure.starts_with("final:") && force_column(measure.substr(colon + 1));
 }
 
 std::vector<std::string> columns_of(const std::shared_ptr<const Model>& model) {
@@ -291,6 +349,17 @@ RunMeasure find_measure(const std::string& name, const std::vector<std::string>&
     const std::string of = name.substr(colon + 1);
     std::vector<std::string_view> there(columns.begin(), columns.end());
     if (there.empty()) there = diagnostic_names();
+    // Flags of what was found already are known without columns.
+    const std::string_view base =
+        std::string_view(name).substr(0, name.size() - std::min<std::size_t>(name.size(), 7));
+    const bool flag = uniqueness_of(base) == name;
+    const std::string_view flagged = flag ? base.substr(colon + 1) : std::string_view();
+    if (flag && (columns.empty() || std::find(there.begin(), there.end(), flagged) != there.end()))
+      return {
+          name, std::string(s.name) + "_" + of, std::string(s.label) + column_label(flagged) + " is unique",
+          [of = std::string(flagged), largest = s.name == "max"](
+              const Simulation& run, const Diagnostics& d) { return extreme_unique(run, d, of, largest); }};
+    if (columns.empty() && of.ends_with("_unique")) there.push_back(of);
     if (std::find(there.begin(), there.end(), of) == there.end())
       throw StudyError("no column " + in_quotes(of) + " to measure" + did_you_mean(of, there));
     return {name, std::string(s.name) + "_" + of, std::string(s.label) + column_label(of),

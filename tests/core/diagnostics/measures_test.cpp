@@ -288,4 +288,31 @@ TEST_CASE("a measure that is a column by its name says how it is measured") {
   CHECK(find_measure("max:fraction", named).label == "largest fraction");
 }
 
+// A force by the name of its column is the same force: the ring's largest tension is of its last pose at
+// 200 N, where it is not unique.
+TEST_CASE("extremes of columns are said to be open where the measures of the same forces are") {
+  bool open[2] = {};
+  for (const bool moduli : {false, true}) {
+    INFO(moduli);
+    std::vector<std::string> changes{"solver.end_time=6", "solver.step=0.02"};
+    if (moduli) changes.push_back("structure.youngs_modulus=7e10");
+    const Scene scene = read_scene_file(find_scene("hoop6"), changes);
+    const Simulation run = simulate(build_model(scene), scene.solver);
+    const Diagnostics d = diagnose(run);
+    const auto flag = [&](const char* measure) { return find_measure(uniqueness_of(measure)).value(run, d); };
+    open[flag("peak_tension") != 0] = true;
+    CHECK(flag("max:axial_force_max_N") == flag("peak_tension"));
+    CHECK(flag("min:axial_force_min_N") == flag("peak_compression"));
+    CHECK(flag("final:axial_force_min_N") == d.at("axial_force_min_unique").values.back());
+    if (!moduli) continue;
+    CHECK(flag("max:axial_stress_max_Pa") == flag("peak_tension"));  // rods of one section
+    CHECK(flag("max:buckling_ratio_max") == flag("buckling_margin"));
+  }
+  CHECK((open[0] && open[1]));
+  CHECK(uniqueness_of("max:my_hub.torque_N_m") == "max:my_hub.torque_N_m_unique");
+  CHECK(uniqueness_of("final:my_pin.reaction_x_N") == "final:my_pin.reaction_unique");
+  CHECK(uniqueness_of("max:kinetic_energy_J").empty());
+  CHECK_THROWS_AS(find_measure("max:no_force_N_unique", {"axial_force_max_N"}), StudyError);
+}
+
 }  // namespace measures_test
