@@ -70,6 +70,7 @@ class Cutter {
       bend.name = "bending of " + s_.nodes[static_cast<std::size_t>(nodes[k])].name;
       bend.nodes = {nodes[k - 1], nodes[k], nodes[k + 1]};
       bend.stiffness = rod.youngs_modulus * rod.second_moment * rod.multiplicity;
+      bend.damping = rod.gives ? rod.damping_time * bend.stiffness : 0;
       s_.forces.push_back(std::move(bend));
     }
   }
