@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/forces/offload.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -13,7 +14,8 @@ class Offload final : public ForceBlock {
  public:
   Offload(const Structure& structure, const SparseRows& node_mass) {
     const auto n = static_cast<Index>(structure.nodes.size());
-    const VectorXd weight = node_mass * structure.gravity.replicate(n, 1);
+    VectorXd weight = node_mass * structure.gravity.replicate(n, 1);
+    share_within_rods(structure, weight);
     const double size = structure.gravity.norm();
     const Vec3 down = size > 0 ? Vec3(structure.gravity / size) : Vec3::Zero();
     across_ = Mat3::Identity() - down * down.transpose();
@@ -54,6 +56,26 @@ class Offload final : public ForceBlock {
     double stiffness;  // k [N/m]
     Vec3 trolley;      // x_t [m]
   };
+  // What the nodes within a rod that was cut weigh hangs on its ends, by the lever, where they have no ropes
+  // of their own: half of a rod on either end, as of one that was not cut.
+  static void share_within_rods(const Structure& structure, VectorXd& weight) {
+    const auto hangs = [&](int node) {
+      return std::ranges::any_of(structure.forces,
+                                 [&](const Force& f) { return f.kind == "offload" && f.nodes[0] == node; });
+    };
+    const auto of = [&](int node) { return weight.segment<3>(3 * static_cast<Index>(node)); };
+    for (std::size_t r = 0; r < structure.rods.size();) {
+      const auto parts = static_cast<std::size_t>(std::max(structure.rods[r].parts, 1));
+      for (std::size_t k = 1; k < parts; ++k) {
+        const int within = structure.rods[r + k].a;
+        if (hangs(within)) continue;
+        const double share = static_cast<double>(k) / static_cast<double>(parts);
+        of(structure.rods[r].a) += (1 - share) * of(within);
+        of(structure.rods[r + parts - 1].b) += share * of(within);
+      }
+      r += parts;
+    }
+  }
   Vec3 aside(const Rope& r, const double* q) const { return across_ * (node_vector(q, r.node) - r.trolley); }
 
   Mat3 across_;  // P

@@ -135,6 +135,13 @@ void add_force(const SceneElement& e, ElementAdder& to) {
     to.structure.notes.push_back(
         problem_text({{}, e.key, "does nothing without a weight: gravity.acceleration is 0"}));
   for (Force& force : forces_on(e, kind.members, to.find)) {
+    if (e.kind == "offload" && std::ranges::any_of(to.structure.forces, [&](const Force& other) {
+          return other.kind == "offload" && other.nodes == force.nodes;
+        }))
+      return to.find.problem(
+          e, "nodes",
+          "names " + in_quotes(to.structure.nodes[static_cast<std::size_t>(force.nodes[0])].name) +
+              ", which hangs on the rope of another entry already, with its whole weight");
     const double begin = force.rest;
     try {
       kind.fill(e.values, force);
