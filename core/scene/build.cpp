@@ -19,6 +19,7 @@
 #include "core/structures/assembly.hpp"
 #include "core/structures/family.hpp"
 #include "core/structures/rod_material.hpp"
+#include "core/structures/segments.hpp"
 #include "core/system/assemble_elastic.hpp"
 #include "core/system/consistency.hpp"
 #include "core/system/fit_lengths.hpp"
@@ -171,6 +172,7 @@ void add_loads(const Scene& scene, Structure& structure) {
     const auto& load = scene.loads[i];
     if (!load.enabled) continue;
     const std::string key = "loads[" + std::to_string(i) + "].nodes";
+    const auto problem = [&](const std::string& text) { problems.push_back({load.where, key, text}); };
     std::set<int> loaded;
     for (const auto& pattern : load.nodes) {
       std::vector<int> found = names.matching(pattern);
@@ -180,14 +182,11 @@ void add_loads(const Scene& scene, Structure& structure) {
         if (loaded.insert(node).second)
           add_load(structure, node, load.force);
         else
-          problems.push_back({load.where, key,
-                              "names " + in_quotes(structure.nodes[static_cast<std::size_t>(node)].name) +
-                                  " more than once"});
+          problem("names " + in_quotes(structure.nodes[static_cast<std::size_t>(node)].name) +
+                  " more than once");
       }
-      if (found.empty() && known) problems.push_back({load.where, key, only_within_rods(pattern)});
-      if (!known)
-        problems.push_back({load.where, key,
-                            "no node matches " + in_quotes(pattern) + did_you_mean(pattern, names.names())});
+      if (found.empty() && known) problem(only_within_rods(pattern));
+      if (!known) problem("no node matches " + in_quotes(pattern) + did_you_mean(pattern, names.names()));
     }
   }
   if (!problems.empty()) throw SceneError(std::move(problems));
@@ -444,6 +443,7 @@ Structure build_structure(const Scene& scene) {
   note_idle_joints(structure);
   note_idle_materials(scene, structure);
   note_pins_between(structure);
+  bend_to_ends(structure, PinLoads::any(structure));
   for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
   structure.notes.insert(structure.notes.end(), moves.begin(), moves.end());
   return structure;

@@ -101,6 +101,7 @@ std::optional<Measure> angle_at(const SceneElement& e, MemberFinder& find, const
     find.problem(e, key, "an angle needs three different nodes");
     return {};
   }
+  find.follow_bends(measure);
   if (!find.angle_is_defined(e, measure, key == "nodes" ? "" : key)) return {};
   measure.reference = find.initial(measure);
   return measure;

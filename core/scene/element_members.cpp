@@ -223,6 +223,7 @@ bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure&
     problem(element, "nodes", "an angle needs three different nodes");
     return false;
   }
+  follow_bends(measure);
   if (measure.nodes[0] == measure.nodes[2] && measure.nodes[1] == measure.nodes[3]) {
     problem(
         element, element.nodes.empty() ? "rods" : "nodes",
@@ -230,6 +231,27 @@ bool MemberFinder::angle(const SceneElement& element, const Vec3& axis, Measure&
     return false;
   }
   return angle_is_defined(element, measure);
+}
+
+// A rod is named by its other end or by the first node within it.
+void MemberFinder::follow_bends(Measure& angle) const {
+  std::vector<int> n = angle.nodes;
+  if (n[0] != n[2]) return;
+  n.push_back(n[1]), n.push_back(n[3]);
+  for (const CutRod& cut : parts_) {
+    const auto part = [&](int r) { return &structure_.rods[static_cast<std::size_t>(r)]; };
+    const Rod *first = part(cut.first), *last = part(cut.last);
+    if (first == last) continue;
+    for (const std::size_t line : {0U, 1U}) {
+      int& to = n[2 * line + 1];
+      const auto leave = [&](int end, int other, int next, int second) {
+        if (n[0] == end && (to == other || to == next)) to = next, n[4 + line] = second;
+      };
+      leave(first->a, last->b, first->b, part(cut.first + 1)->b);
+      leave(last->b, first->a, last->a, part(cut.last - 1)->a);
+    }
+  }
+  if (n[1] != n[3] && (n[4] != n[1] || n[5] != n[3])) angle.nodes = n;
 }
 
 // What coordinates are rounded by is no distance.

@@ -59,6 +59,8 @@ class MemberFinder {
   // False, a problem noted: a line of the angle has no direction, or is along its axis. `key`: the entry's
   // that gives both; none: those of its members and "axis".
   bool angle_is_defined(const SceneElement& element, const Measure& measure, const std::string& key = "");
+  // Lines of an angle that leave its hinge along a rod that was cut to bend are its tangent there.
+  void follow_bends(Measure& angle) const;
   double initial(const Measure& measure) const;  // at the structure's start
   // Values of the measure that are no further apart are one [m] or [rad]: what is typed or worked out
   // elsewhere has some nine digits, of a length beside the structure's size.

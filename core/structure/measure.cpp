@@ -15,8 +15,6 @@ namespace {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
-using Vec12 = Eigen::Matrix<double, 12, 1>;
-using Mat12 = Eigen::Matrix<double, 12, 12>;
 
 Mat3 cross_matrix(const Vec3& a) {
   Mat3 m;
@@ -24,21 +22,35 @@ Mat3 cross_matrix(const Vec3& a) {
   return m;
 }
 
-// From derivatives by (d_1, d_2) to those by (x_0, x_1, x_2, x_3): d_1 = x_1 - x_0, d_2 = x_3 - x_2.
-Vec12 spread(const Vec6& g) {
-  Vec12 out;
-  out << -g.head<3>(), g.head<3>(), -g.tail<3>(), g.tail<3>();
+// From derivatives by (d_1, d_2) to those by the nodes: d_1 = x_1 - x_0, d_2 = x_3 - x_2, or of six nodes,
+// where x_1 and x_4 are the first ones within a rod that bends (structures/segments.hpp), its tangent at x_0,
+//     d_1 = 2 (x_1 - x_0) - (x_4 - x_0) / 2,     d_2 = 2 (x_3 - x_2) - (x_5 - x_2) / 2
+// of a line that is straight x_4 is x_1, or x_5 is x_3.
+using Shares = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, 6>;
+Shares shares(Index nodes) {
+  Shares out(2, nodes);
+  if (nodes == 4)
+    out << -1, 1, 0, 0, 0, 0, -1, 1;
+  else
+    out << -1.5, 2, 0, 0, -0.5, 0, 0, 0, -1.5, 2, 0, -0.5;
   return out;
 }
 
-Mat12 spread(const Mat6& h) {
-  Mat12 out;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) {
-      const double sign = (i % 2 ? 1.0 : -1.0) * (j % 2 ? 1.0 : -1.0);
-      out.block<3, 3>(3 * i, 3 * j) = sign * h.block<3, 3>(3 * (i / 2), 3 * (j / 2));
+void spread(const Vec6& g, Eigen::Ref<VectorXd> out) {
+  const Shares share = shares(out.size() / 3);
+  for (Index i = 0; i < share.cols(); ++i)
+    out.segment<3>(3 * i) = share(0, i) * g.head<3>() + share(1, i) * g.tail<3>();
+}
+
+void spread(const Mat6& h, Eigen::Ref<MatrixXd> out) {
+  const Shares share = shares(out.rows() / 3);
+  for (Index i = 0; i < share.cols(); ++i)
+    for (Index j = 0; j < share.cols(); ++j) {
+      out.block<3, 3>(3 * i, 3 * j).setZero();
+      for (Index a = 0; a < 2; ++a)
+        for (Index b = 0; b < 2; ++b)
+          out.block<3, 3>(3 * i, 3 * j) += share(a, i) * share(b, j) * h.block<3, 3>(3 * a, 3 * b);
     }
-  return out;
 }
 
 // Hessian of atan2(s, c): with r^2 = s^2 + c^2
@@ -237,8 +249,11 @@ double MeasureFunction::linear(const VectorXd& coefficients, double offset, cons
 }
 
 Vec3 MeasureFunction::edge(const double* q, std::size_t from) const {
-  const int a = stencil_[3 * from], b = stencil_[3 * from + 3];
-  return {q[b] - q[a], q[b + 1] - q[a + 1], q[b + 2] - q[a + 2]};
+  const auto to = [&](std::size_t node) -> Vec3 {
+    const int a = stencil_[3 * from], b = stencil_[3 * node];
+    return {q[b] - q[a], q[b + 1] - q[a + 1], q[b + 2] - q[a + 2]};
+  };
+  return stencil_.size() == 18 ? Vec3(2 * to(from + 1) - 0.5 * to(4 + from / 2)) : to(from + 1);
 }
 
 // s and c of the angle and their first derivatives by (d_1, d_2).
@@ -292,7 +307,7 @@ double MeasureFunction::value_and_gradient(const double* q, double* gradient, do
   }
   const Angle a = angle_terms(q);
   const double square = a.s * a.s + a.c * a.c;
-  g = spread(Vec6((a.c * a.ds - a.s * a.dc) / square));
+  spread(Vec6((a.c * a.ds - a.s * a.dc) / square), g);
   return axis_.isZero(0.0) ? std::atan2(a.s, a.c) : on_branch(std::atan2(a.s, a.c), near);
 }
 
@@ -301,7 +316,7 @@ double MeasureFunction::value(const double* q, double near) const {
   if (kind_ == MeasureKind::coordinate) return linear(sine_, 0.0, q);
   if (kind_ == MeasureKind::fold)
     return on_branch(std::atan2(linear(sine_, sine_offset_, q), linear(cosine_, cosine_offset_, q)), near);
-  std::array<double, 12> unused{};
+  std::array<double, 18> unused{};
   return value_and_gradient(q, unused.data(), near);
 }
 
@@ -416,8 +431,8 @@ void MeasureFunction::angle_hessian(const double* q, double* hess) const {
     hc << Mat3::Zero(), across, across, Mat3::Zero();
   }
   const Mat6 linear_part = (a.c * hs - a.s * hc) / square;
-  Eigen::Map<Mat12> out(hess);
-  out = spread(Mat6(atan2_hessian(a.s, a.c, a.ds, a.dc, linear_part)));
+  const auto size = static_cast<Index>(stencil_.size());
+  spread(Mat6(atan2_hessian(a.s, a.c, a.ds, a.dc, linear_part)), Eigen::Map<MatrixXd>(hess, size, size));
 }
 
 }  // namespace unfurl

@@ -87,7 +87,7 @@ struct MeasureTerm;
 // A scalar of the configuration; core/structure/measure.hpp says what each kind measures.
 struct Measure {
   MeasureKind kind = MeasureKind::length;
-  std::vector<int> nodes;  // coordinate: 1 or 2; length: 2; angle, dihedral: 4; fold, combination: none
+  std::vector<int> nodes;  // coordinate: 1 or 2; length: 2; angle: 4 or 6; dihedral: 4; others: none
   Vec3 axis = Vec3::Zero();
   double reference =
       0.0;  // angles with a sign: at t = 0 they are counted on the branch within pi of it [rad]

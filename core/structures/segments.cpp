@@ -98,7 +98,41 @@ class Cutter {
   std::set<std::string> node_names_, rod_names_;
 };
 
+template <class Visit>
+void visit_measures(Structure& structure, const Visit& visit) {
+  const auto look = [&](Measure& measure) {
+    visit(measure);
+    for (MeasureTerm& term : measure.terms) visit(term.measure);
+  };
+  look(structure.deployment.measure);
+  for (Force& force : structure.forces) look(force.measure);
+  for (Constraint& c : structure.constraints) look(c.measure);
+  for (Stop& stop : structure.stops) look(stop.measure);
+}
+
 }  // namespace
+
+void bend_to_ends(Structure& structure, bool by_pin) {
+  std::set<std::vector<int>> ends;  // end, first and second node within
+  visit_measures(structure, [&](Measure& measure) {
+    auto& n = measure.nodes;
+    if (n.size() < 6) return;
+    for (const std::size_t line : {0U, 1U})
+      if (n[4 + line] != n[2 * line + 1]) ends.insert({n[2 * line], n[2 * line + 1], n[4 + line]});
+    if (by_pin) n.resize(4);
+  });
+  if (ends.empty()) return;
+  if (by_pin)
+    structure.notes.push_back(
+        "pin_friction takes rods that were cut to bend (segments) as stiff from an end to the middle of its "
+        "first part: what torques and held angles bend them is of first order in 1/segments");
+  for (Force& force : structure.forces) {
+    if (force.kind != "bending" || by_pin) continue;
+    const std::vector<int> back(force.nodes.rbegin(), force.nodes.rend());
+    const double more = 1 + 0.5 * static_cast<double>(ends.count(force.nodes) + ends.count(back));
+    force.stiffness *= more, force.damping *= more;
+  }
+}
 
 void cut_rods(Structure& structure, const std::vector<long>& segments) {
   if (std::all_of(segments.begin(), segments.end(), [](long k) { return k <= 1; })) return;

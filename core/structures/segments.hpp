@@ -15,4 +15,12 @@ namespace unfurl {
 // and where a pin sits between the ends of rods: such a pin would not follow the bent rod.
 void cut_rods(Structure& structure, const std::vector<long>& segments);
 
+// A rod bends at the nodes within it, each for half a part on either side; the half parts at its ends are
+// left out, as pins leave no moment there. Where an angle of six nodes (measure.cpp) acts on a rod's end, it
+// takes the tangent of a rod that bends there as it does at the first node, from that on back to the end:
+// with 1.5 of the parts to bend the stiffness there is that much larger, and deflections are right to the
+// second order in 1/k. Friction by the force of a pin needs the first part's own direction: where a structure
+// has it (by_pin), angles are those of the parts, of first order, and a note says so.
+void bend_to_ends(Structure& structure, bool by_pin);
+
 }  // namespace unfurl
