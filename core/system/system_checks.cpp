@@ -4,6 +4,7 @@
 
 #include "core/structure/structure_error.hpp"
 #include "core/system/system_data.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 
@@ -31,6 +32,14 @@ void System::Data::check_mass(const Structure& structure) const {
   for (Index i = 0; i < mass.rows(); ++i)
     if (!(mass.coeff(i, i) > 0)) {
       const auto node = static_cast<std::size_t>(free_coordinates[static_cast<std::size_t>(i)] / 3);
+      for (const Constraint& c : structure.constraints)
+        if (c.kind == "measure" && c.measure.kind == MeasureKind::coordinate &&
+            c.measure.nodes == std::vector{static_cast<int>(node)})
+          throw StructureError("nodes[" + std::to_string(node) + "].mass",
+                               "node " + structure.nodes[node].name + " has no mass, and " +
+                                   in_quotes(c.name) +
+                                   " holds or drives what has one: give it a mass, or hold it by kind = "
+                                   "\"plane\"");
       throw StructureError(
           "nodes[" + std::to_string(node) + "].mass",
           "node " + structure.nodes[node].name +
