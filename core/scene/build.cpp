@@ -478,8 +478,8 @@ void refuse_warm_start(const Scene& scene, const Structure& structure) {
 }  // namespace
 
 std::shared_ptr<const Model> build_model(const Scene& scene) {
-  Structure structure = build_structure(scene);
   try {
+    Structure structure = build_structure(scene);
     System system(structure, scene.solver.eliminate_linear);
     try {
       check_consistency(structure, system);
