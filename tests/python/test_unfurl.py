@@ -165,6 +165,12 @@ def test_sweep_and_solve_agree_with_single_runs():
     assert abs(found - 150) < 1e-5
 
 
+def test_numbers_are_those_of_the_array():
+    run = unfurl.Scene("double_pendulum", set={"solver.end_time": 0.1}).run()
+    for i, name in enumerate(run.nodes):
+        assert np.array_equal(run.x[:, i], run.x[name])
+
+
 def test_what_is_solved_for_tells_what_its_run_is_warned_of():
     square = unfurl.Structure([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2], [1, 3]], fixed=[0],
                               gravity=(0, -10, 0), set={"solver.end_time": 0.1, "solver.step": 0.01})

@@ -55,7 +55,10 @@ def _needed(package: str, by: str):
 
 
 class Named:
-    """An array whose second axis (nodes, rods) goes by name or index: run.x["B0"] is [steps, 3]."""
+    """An array whose second axis (nodes, rods) goes by name: run.x["B0"] is [steps, 3].
+
+    Numbers are those of the array: run.x[k] is state k of all nodes, run.x[:, i] node i in all states.
+    """
 
     def __init__(self, array: np.ndarray, names: Sequence[str], what: str):
         self.array, self.names, self._what = array, list(names), what
