@@ -84,8 +84,9 @@ int cmd_render(const Arguments& arguments) {
 
   if (arguments.encode_only) {
     require_all_frames(folder, shown, run, arguments);
-    return encode_films(directory, folder, shown, run, arguments) ? exit_code_of(run, diagnostics)
-                                                                  : exit_interrupted;
+    if (!encode_films(directory, folder, shown, run, arguments)) return exit_interrupted;
+    results_written(team.get());
+    return exit_code_of(run, diagnostics);
   }
   FigureWriter writer(*context, style);
   if (!draw_frames(folder, shown, run, diagnostics, *context, arguments, memory) ||
@@ -95,6 +96,7 @@ int cmd_render(const Arguments& arguments) {
     return exit_interrupted;
   }
   write_run_report(directory, scene, run, diagnostics, arguments);
+  results_written(team.get());
   return exit_code_of(run, diagnostics);
 }
 

@@ -74,6 +74,7 @@ int cmd_stress(const Arguments& arguments) {
     report.picture(session.write(long_run_figure(stress, scene.title)), "Errors over very many steps.");
   }
   session.write("stress.md", report_markdown(report));
+  results_written(team.get());
   return finish(stress.complete, arguments, std::to_string(stress.cells.size()) + " cells");
 }
 

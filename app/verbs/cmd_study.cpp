@@ -49,7 +49,21 @@ Report study_report(const Study& study, const Scene& scene, const std::vector<st
   return report;
 }
 
+// What --models has no use for.
+void refuse_what_models_lack(const Arguments& arguments) {
+  const auto refuse = [](bool given, const char* option) {
+    if (given) throw UsageError(std::string(option) + " is not for --models; leave it out");
+  };
+  refuse(!arguments.study.ladder.empty(), "--steps");
+  refuse(!arguments.study.methods.empty(), "--methods");
+  refuse(arguments.join, "--join");
+  refuse(!arguments.style.empty(), "--style");
+  refuse(!arguments.font.empty(), "--font");
+  refuse(arguments.dpi > 0, "--dpi");
+}
+
 int study_models(const Arguments& arguments) {
+  refuse_what_models_lack(arguments);
   const SceneSource source = scene_source(find_scene(arguments.names.front()), arguments.overrides);
   const Scene scene = source.read();
   const InterruptGuard guard;
@@ -59,7 +73,7 @@ int study_models(const Arguments& arguments) {
     models =
         compare_models(source, arguments.study.repeats > 0 ? arguments.study.repeats : 5, session.hooks());
   } catch (const Cancelled&) {
-    std::cerr << "unfurl: interrupted before there was anything to write\n";
+    std::cerr << "unfurl: interrupted; --models keeps nothing until all is measured\n";
     return exit_interrupted;
   }
   session.write("models.csv", csv_text(models_table(models)));
@@ -120,6 +134,7 @@ int cmd_study(const Arguments& arguments) {
        {work_precision_figure(study, scene.title), convergence_figure(study, scene.title)})
     pictures.push_back(session.write(figure));
   session.write("study.md", report_markdown(study_report(study, scene, pictures)));
+  results_written(team.get());
   return finish(study.complete, arguments, cheapest_sentence(study));
 }
 

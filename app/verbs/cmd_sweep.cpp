@@ -149,6 +149,9 @@ void warn_of_idle_axes(const SweepPlan& plan, const Arguments& arguments) {
   }
 }
 
+constexpr const char* figure_wants =
+    "it takes one or two --vary, numbers in one and in the other numbers, too, or 12 values at most";
+
 std::string journal_name(const Shard& shard) {
   if (shard.count == 1) return "sweep.csv";
   return "sweep_" + std::to_string(shard.index) + "_of_" + std::to_string(shard.count) + ".csv";
@@ -303,6 +306,10 @@ int cmd_sweep(const Arguments& arguments) {
     pictures.push_back(session.write(figure));
   Report report{"Sweep: " + title_of(scene, plan)};
   report.paragraph(count + ".");
+  if (pictures.empty() && !sweep.table.rows.empty()) {
+    report.paragraph("No figure: " + std::string(figure_wants) + ".");
+    if (!arguments.quiet) std::cerr << "no figure: " << figure_wants << "\n";
+  }
   for (const auto& picture : pictures) report.picture(picture, picture);
   if (sweep.table.rows.size() <= 1000) {
     Table plain =
@@ -317,6 +324,7 @@ int cmd_sweep(const Arguments& arguments) {
     throw FileError(session.directory(),
                     std::to_string(sweep.missing.size()) + " of " + std::to_string(plan.points()) +
                         " points are missing; what there is was merged" + cure(plan, sweep, arguments));
+  results_written(team.get());
   const int code = finish(sweep.missing.empty(), arguments, count);
   return code == exit_ok ? code_of_answers(plan, sweep) : code;
 }

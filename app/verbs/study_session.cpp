@@ -124,7 +124,6 @@ void StudySession::begin(const std::string& identity) {
                                      : !journals_like(journal_, directory()).empty();
   if (begun) require_identity(directory(), identity, "use another directory, or --force to begin anew");
   if (!identity.empty()) write_file_atomically(directory() / "scene.toml", identity);
-  if (!arguments_.join) output_.written().grows(journal_);
   if (shard()) output_.lock().share();
 }
 

@@ -25,27 +25,41 @@ inline std::unique_ptr<Team> join_team(const Arguments& arguments, const std::fi
   return arguments.join ? std::make_unique<Team>(directory / "join", arguments.lease) : nullptr;
 }
 
-// The same over the directory of a study, in which the worker's journal grows.
+// The same over the directory of a study, in which the worker's journal grows, or that of the only one.
 inline std::unique_ptr<Team> join_team(const Arguments& arguments, StudySession& session) {
   auto team = join_team(arguments, session.directory());
-  if (team) session.grows(team->journal());
+  session.grows(team ? team->journal() : session.journal());
   return team;
 }
 
-// `done()` works off what no other worker is at and says whether all is there; it is asked until it is, or
-// until a person interrupts (false). True for the one worker that is to write the results.
+// Asks `done()` until it says so (true), or until a person interrupts (false).
 template <class Done>
-bool work_together(Team& team, const Arguments& arguments, const Done& done) {
+bool wait_until(const Arguments& arguments, const Done& done) {
   using namespace std::chrono;
   while (!done()) {
     const auto until = steady_clock::now() + duration<double>(std::min(0.5, arguments.lease / 4));
     while (!interrupted() && steady_clock::now() < until) std::this_thread::sleep_for(milliseconds(20));
     if (interrupted()) return false;
   }
+  return true;
+}
+
+// `done()` works off what no other worker is at and says whether all is there; it is asked until it is. True
+// for the one worker that is to write the results, and say so by results_written(); the others wait until it
+// has, or are that one when it has died. False, too, where a person interrupts.
+template <class Done>
+bool work_together(Team& team, const Arguments& arguments, const Done& done) {
+  if (!wait_until(arguments, done)) return false;
   team.done();
   if (team.takes("results")) return true;
   if (!arguments.quiet) std::cerr << "all is computed; another worker writes the results\n";
-  return false;
+  bool writes = false;
+  wait_until(arguments, [&] { return team.finished("results") || (writes = team.takes("results")); });
+  return writes;
+}
+
+inline void results_written(Team* team) {
+  if (team) team->finish("results");
 }
 
 inline void warn_of_damage(const Journal& journal) {

@@ -86,6 +86,10 @@ fs::path Team::lease_file(const std::string& piece, int generation) const {
   return folder_ / (file_name(piece) + "." + std::to_string(generation) + ".lease");
 }
 
+fs::path Team::mark(const std::string& piece, int generation) const {
+  return lease_file(piece, generation).replace_extension(".done");
+}
+
 bool Team::create(const fs::path& file) const {
   const int made = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (made < 0 && errno == EEXIST) return false;
@@ -123,6 +127,18 @@ bool Team::holds(const std::string& piece) {
   const std::lock_guard lock(mutex_);
   const auto held = held_.find(piece);
   return held != held_.end() && age(lease_file(piece, held->second + 1)) < 0;
+}
+
+void Team::finish(const std::string& piece) {
+  const std::lock_guard lock(mutex_);
+  const auto held = held_.find(piece);
+  if (held != held_.end()) create(mark(piece, held->second));
+}
+
+bool Team::finished(const std::string& piece) const {
+  int next = 0;
+  while (time_of(lease_file(piece, next)) >= 0) ++next;
+  return next > 0 && time_of(mark(piece, next - 1)) >= 0;
 }
 
 void Team::done() {

@@ -19,6 +19,7 @@ namespace unfurl {
 //   NAME.0.lease    who created it first holds the piece; its time of change is renewed while the worker
 //   lives NAME.1.lease    of a piece whose lease .0 was not renewed for `lease` seconds: who created this one
 //   holds it
+//   NAME.1.done     that one has finished it, where others wait for the end
 //
 // Exclusive creation is all that it asks of a file system (no locks), and ages are differences of times that
 // the file system itself gave, so that clocks may differ. A worker that is stopped past its lease and goes on
@@ -38,6 +39,11 @@ class Team {
   // Whether a piece that it took is still its own.
   bool holds(const std::string& piece);
 
+  // For those who wait for a piece that is taken up once, such as the results: its holder says that it is
+  // finished, and whether the last one who held it did. Throws FileError.
+  void finish(const std::string& piece);
+  bool finished(const std::string& piece) const;
+
   // All work is done: what is held is neither renewed nor given back, since others who do not know yet would
   // begin it again.
   void done();
@@ -48,6 +54,7 @@ class Team {
 
  private:
   std::filesystem::path lease_file(const std::string& piece, int generation) const;
+  std::filesystem::path mark(const std::string& piece, int generation) const;  // of what is finished
   bool create(const std::filesystem::path& file) const;
   double age(const std::filesystem::path& file) const;  // [s]; negative: there is none
   void renew(const std::stop_token& stop);

@@ -128,4 +128,32 @@ TEST_CASE("studies and films are shared like a sweep") {
     CHECK(file_text(dir / (std::string("out1/") + name)) == file_text(dir / (std::string("alone/") + name)));
 }
 
+TEST_CASE("results whose writer died are written by who waits for them") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> joined = {"sweep",     "pendulum",
+                                           "--vary",    "solver.end_time=0.1,0.2",
+                                           "--measure", "max:kinetic_energy_J",
+                                           "--dpi",     "40",
+                                           "--join",    "-o",
+                                           dir / "out"};
+  REQUIRE(run_program(joined).code == 0);
+  const std::string written = file_text(dir / "out/sweep.md");
+  REQUIRE(fs::remove(dir / "out/sweep.md"));
+  // As a worker leaves it that is killed while it writes: a lease that was renewed a moment ago.
+  dir.write("out/join/results.1.lease", "somebody\n");
+  const ProgramResult other = run_program(joined + std::vector<std::string>{"--lease", "0.5"});
+  CHECK(other.code == 0);
+  CHECK(other.err.find("another worker writes the results") != std::string::npos);
+  CHECK(file_text(dir / "out/sweep.md") == written);
+  // One that lives longer than this one waits, and then says that it has finished.
+  REQUIRE(fs::remove(dir / "out/sweep.md"));
+  dir.write("out/join/results.3.lease", "somebody\n");
+  std::string words;
+  for (const auto& word : joined) words += "'" + word + "' ";
+  const std::string command = "\"" UNFURL_PROGRAM "\" " + words + " & p=$!; sleep 1; kill -0 $p && cd '" +
+                              dir / "out/join" + "' && echo > results.3.done && wait $p";
+  CHECK(std::system(("( " + command + " ) 2>/dev/null").c_str()) == 0);
+  CHECK_FALSE(fs::exists(dir / "out/sweep.md"));  // it was the other's to write
+}
+
 }  // namespace join_test

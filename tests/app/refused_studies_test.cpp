@@ -30,6 +30,73 @@ TEST_CASE("damaged rows of an earlier sweep are told of and computed anew") {
   CHECK(run_program(sweep).err.find("no finished result") == std::string::npos);
 }
 
+TEST_CASE("a comparison of models takes no options of studies and keeps nothing of half of one") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> models = {"study", "hoop6", "--models", "-o", dir / "out"};
+  const std::vector<std::vector<std::string>> idle = {{"--methods", "dvm"}, {"--steps", "0.02:0.01"},
+                                                      {"--join"},           {"--style", "slide"},
+                                                      {"--font", "dejavu"}, {"--dpi", "60"}};
+  for (const auto& option : idle) {
+    auto words = models;
+    words.insert(words.end(), option.begin(), option.end());
+    const ProgramResult r = run_program(words);
+    CHECK(r.code == 2);
+    CHECK(r.err == "unfurl: " + option.front() + " is not for --models; leave it out\n");
+  }
+  CHECK_FALSE(std::filesystem::exists(dir / "out"));
+  // Five runs of each of twelve models, of 20 ms each and more: longer than half a second.
+  const ProgramResult r = run_program(models, {.interrupt_after_s = 0.5});
+  CHECK(r.code == 130);
+  CHECK(r.err.find("unfurl: interrupted; --models keeps nothing until all is measured\n") < r.err.size());
+  CHECK_FALSE(std::filesystem::exists(dir / "out/models.csv"));
+  CHECK(run_program({"verify", dir / "out"}).code == 0);
+}
+
+TEST_CASE("a scene that does not run is no fault of the command line") {
+  const ScratchDirectory dir;
+  // A rod of no strength of its own that two drives pull apart: no step goes past that, however small.
+  const std::string scene = dir.write("torn.toml", R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [0.6, 0, 0.8]}]
+rods = [{nodes = ["A", "B"], mass = 1}]
+[[constraints]]
+kind = "coordinate"
+nodes = ["B"]
+direction = [1, 0, 0]
+motion = "rate"
+rate = 1
+[solver]
+end_time = 1
+)");
+  const ProgramResult study = run_program({"study", scene, "-o", dir / "out", "--quiet"});
+  INFO(study.err);
+  CHECK(study.code == run_program({"run", scene, "-o", dir / "run", "--quiet"}).code);
+  CHECK(study.code == 4);
+  CHECK(study.err.find("unfurl: the scene as it stands does not run (at t = 0.4") == 0);
+}
+
+TEST_CASE("a sweep that draws no figure says so") {
+  const ScratchDirectory dir;
+  const std::vector<std::string> sweep = {"sweep", "pendulum", "--measure", "max:kinetic_energy_J",
+                                          "--dpi", "40",       "--set",     "solver.end_time=0.1",
+                                          "--vary"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    auto words = sweep;
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  const std::string said = "no figure: it takes one or two --vary, numbers in one";
+  const ProgramResult words = with({"solver.method=dvm,rk4", "-o", dir / "words"}),
+                      numbers = with({"structure.angle=10,20", "-o", dir / "numbers"}),
+                      three = with({"structure.angle=10,20", "--vary", "structure.length=1,2", "--vary",
+                                    "structure.bob_mass=1,2", "-o", dir / "three"});
+  CHECK(words.err.find(said) != std::string::npos);
+  CHECK(three.err.find(said) != std::string::npos);
+  CHECK(file_text(dir / "three/sweep.md").find("No figure: it takes") != std::string::npos);
+  CHECK(numbers.err.find("no figure") == std::string::npos);
+}
+
 TEST_CASE("results that are not asked for again are not written over") {
   const ScratchDirectory dir;
   struct Case {

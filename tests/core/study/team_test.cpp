@@ -61,6 +61,30 @@ TEST_CASE("a piece of work is one worker's until that gives it back") {
   CHECK_FALSE(one.takes("points-5"));  // done, and nobody is to begin it again
 }
 
+TEST_CASE("those who wait for a piece are told when it is finished, not when its worker goes") {
+  const Folder scratch;
+  const fs::path folder = scratch.path / "join";
+  Team waiting(folder, 60);
+  CHECK_FALSE(waiting.finished("results"));
+  {
+    Team interrupted(folder, 60);
+    REQUIRE(interrupted.takes("results"));
+    CHECK_FALSE(waiting.finished("results"));
+  }
+  CHECK_FALSE(waiting.finished("results"));
+  {
+    Team writer(folder, 60);
+    REQUIRE(writer.takes("results"));  // at once: given back
+    CHECK_FALSE(waiting.takes("results"));
+    writer.finish("results");
+    CHECK(waiting.finished("results"));
+    waiting.finish("results");  // not its own: nothing
+  }
+  CHECK(waiting.finished("results"));
+  CHECK(waiting.takes("results"));  // who is given the same command later may write them again
+  CHECK_FALSE(waiting.finished("results"));
+}
+
 TEST_CASE("names that differ in any character are different pieces") {
   const Folder scratch;
   const fs::path folder = scratch.path / "join";
