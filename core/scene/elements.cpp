@@ -18,7 +18,7 @@ void read_table(TableReader& entry, ParamSet& values, const std::string& folder,
   static const std::vector<CsvColumn> columns = {{"t", "s", true, true}, {"value", "", true, true}};
   const std::string name = values.text("table");
   if (name.empty()) return;
-  if (!values.vector("times").empty())
+  if (!values.vector("times").empty() || !values.vector("values").empty())
     return entry.problem("table", "give either table, or times and values");
   const TextFile file = read_file_beside(folder, name);
   notes.files.insert(file.path);

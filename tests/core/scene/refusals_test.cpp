@@ -465,6 +465,11 @@ TEST_CASE("an angle of a rod with itself is refused, and a misspelt table of var
                   key + std::string(": unknown key; did you mean 'variables'?")));
 }
 
+TEST_CASE("values beside a table are refused") {
+  const std::string load = "kind = 'load_over_time'\nnodes = ['A']\nforce = [1, 0, 0]\ntable = 'f.csv'\n";
+  CHECK(refused(force(load + "values = [1, 2]"), "table: give either table, or times and values"));
+}
+
 TEST_CASE("a rigid rod that is warm at t = 0 already is named with what warms it and the cure") {
   const std::string warm = "kind = 'temperature'\nrods = ['O-A']\nexpansion = 2e-5\n";
   const std::string why =
