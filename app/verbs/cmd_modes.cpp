@@ -93,7 +93,7 @@ int cmd_modes(const Arguments& arguments) {
   session.write("mode_shapes.csv", csv_text(shapes_table(vibration, structure)));
   VectorXd q(pose.model->system.coordinates());
   pose.model->system.expand(pose.state.z, q);
-  if (!vibration.modes.empty() && !structure.rod_copies.empty())
+  if (!vibration.modes.empty())
     session.write(mode_shapes_figure(structure, whole_positions(structure, q), vibration, scene.title));
   return pose.code;
 }

@@ -29,10 +29,10 @@ ModalPose at_start(const Scene& scene, const Arguments& arguments) {
     first.end_time = std::min(first.end_time, first.step);
     const auto run = std::make_shared<const Simulation>(simulate(model, first));
     const std::size_t i = run->trajectory.state_before(run->trajectory.start_time());
-    return {{run, &run->trajectory.model(i)}, run->trajectory.state(i)};
+    return {{run, &run->trajectory.model(i)}, {run, &run->trajectory.model()}, run->trajectory.state(i)};
   }
   State state = initial_state(model->structure, model->system).state;
-  return {std::move(model), std::move(state)};
+  return {model, model, std::move(state)};
 }
 
 double time_of_pose(const std::string& at, const Simulation& run) {
@@ -69,6 +69,7 @@ ModalPose in_motion(const Scene& scene, const Arguments& arguments) {
   const double t = time_of_pose(arguments.at, *run);
   const std::size_t i = trajectory.state_before(t);
   return {{run, &trajectory.model(i)},
+          {run, &trajectory.model()},
           trajectory.time(i) == t ? trajectory.state(i) : trajectory.state_at(t),
           exit_code_of(*run, diagnostics)};
 }

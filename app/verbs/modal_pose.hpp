@@ -14,6 +14,7 @@ namespace unfurl {
 
 struct ModalPose {
   std::shared_ptr<const Model> model;  // holds what it belongs to
+  std::shared_ptr<const Model> drawn;  // without stops, latches and frictions that hold at this pose
   State state;
   int code = 0;  // exit code: of a run that failed later on, which has been said, exit_solver_failed
 };

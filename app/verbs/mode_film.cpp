@@ -105,9 +105,29 @@ class Swing {
   double reach_ = 0;
 };
 
-// A trajectory that rests at the pose and is shown displaced: a state at the time of each frame.
+void write_modes(const std::filesystem::path& directory, const Scene& scene, const ModalPose& pose,
+                 const Vibration& vibration, GlContext& context, const FigureOptions& style) {
+  write_file_atomically(directory / "scene.toml", scene_text(scene));
+  write_file_atomically(directory / "modes.csv", csv_text(modes_table(vibration)));
+  const Structure& structure = pose.model->structure;
+  VectorXd q(pose.model->system.coordinates());
+  pose.model->system.expand(pose.state.z, q);
+  const Figure figure = mode_shapes_figure(structure, whole_positions(structure, q), vibration, scene.title);
+  const std::filesystem::path folder = directory / "figures";
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw FileError(folder, error.value());
+  FigureWriter writer(context, style);
+  for (const char* extension : {".svg", ".pdf", ".png"})
+    writer.write(figure, folder / (figure.name + extension));
+  write_figure_data(figure, folder / (figure.name + ".png"));
+}
+
+}  // namespace
+
 Simulation swinging(const ModalPose& pose, const VibrationMode& mode, const RenderOptions& render) {
-  Simulation run{.trajectory = Trajectory(pose.model)};
+  Simulation run{.trajectory = Trajectory(pose.drawn)};
+  run.trajectory.change_model(pose.model);
   const auto of_period = std::max(4L, std::lround(period_s * render.fps));
   const Swing shape(pose, mode);
   std::vector<VectorXd> displaced;
@@ -123,27 +143,6 @@ Simulation swinging(const ModalPose& pose, const VibrationMode& mode, const Rend
   for (std::size_t k = 0; k < displaced.size(); ++k) run.trajectory.add_stretch(k, displaced[k]);
   return run;
 }
-
-void write_modes(const std::filesystem::path& directory, const Scene& scene, const ModalPose& pose,
-                 const Vibration& vibration, GlContext& context, const FigureOptions& style) {
-  write_file_atomically(directory / "scene.toml", scene_text(scene));
-  write_file_atomically(directory / "modes.csv", csv_text(modes_table(vibration)));
-  const Structure& structure = pose.model->structure;
-  if (structure.rod_copies.empty()) return;
-  VectorXd q(pose.model->system.coordinates());
-  pose.model->system.expand(pose.state.z, q);
-  const Figure figure = mode_shapes_figure(structure, whole_positions(structure, q), vibration, scene.title);
-  const std::filesystem::path folder = directory / "figures";
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw FileError(folder, error.value());
-  FigureWriter writer(context, style);
-  for (const char* extension : {".svg", ".pdf", ".png"})
-    writer.write(figure, folder / (figure.name + extension));
-  write_figure_data(figure, folder / (figure.name + ".png"));
-}
-
-}  // namespace
 
 int render_mode(const Arguments& arguments) {
   refuse_what_modes_lack(arguments);

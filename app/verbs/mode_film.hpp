@@ -4,7 +4,9 @@
 #pragma once
 
 #include "app/command.hpp"
+#include "app/verbs/modal_pose.hpp"
 #include "core/scene/scene.hpp"
+#include "core/simulate/simulation.hpp"
 
 namespace unfurl {
 
@@ -13,5 +15,8 @@ namespace unfurl {
 // displacement 9 % of the structure's size; a motion of the mechanism moves as its constraints let it. Writes
 // scene.toml, modes.csv, frames, animations and the figure of the modes.
 int render_mode(const Arguments& arguments);
+
+// A trajectory that rests at the pose and is shown displaced: a state at the time of each frame.
+Simulation swinging(const ModalPose& pose, const VibrationMode& mode, const RenderOptions& render);
 
 }  // namespace unfurl

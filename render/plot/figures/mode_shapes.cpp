@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/structure/shown_lines.hpp"
 #include "render/plot/figures/pose_view.hpp"
 #include "render/plot/ticks.hpp"
 
@@ -30,13 +31,43 @@ std::string mode_title(const VibrationMode& mode, std::size_t number) {
   return head + "free";
 }
 
-void add_rods_at(const Structure& structure, const PoseView& view, const VectorXd& x, int color, float width,
-                 double nearer, Panel& p) {
-  for (const RodCopy& rod : structure.rod_copies) {
-    const Vec3 a = view.project(pose_node(x, rod.a)), b = view.project(pose_node(x, rod.b));
-    p.segments.push_back({a.x(), a.y(), b.x(), b.y(), (a.z() + b.z()) / 2 + nearer, color, width});
+// What is drawn of a pose: rods, cables and springs as thinner lines, and as dots the nodes without a rod.
+class Shape {
+ public:
+  Shape(const Structure& structure, const PoseView& view)
+      : structure_(structure),
+        view_(view),
+        lines_(lines_with_springs(structure)),
+        loose_(structure.node_copies.size(), true) {
+    const double many =
+        std::sqrt(60.0 / static_cast<double>(std::max<std::size_t>(structure.rod_copies.size(), 1)));
+    width_ = std::clamp(1.3 * many, 0.4, 1.5);
+    for (const RodCopy& rod : structure.rod_copies)
+      for (const int n : {rod.a, rod.b}) loose_[static_cast<std::size_t>(n)] = false;
   }
-}
+
+  void add(const VectorXd& x, int color, double wide, double nearer, Panel& p) const {
+    const auto add_line = [&](int from, int to, double width) {
+      const Vec3 a = view_.project(pose_node(x, from)), b = view_.project(pose_node(x, to));
+      p.segments.push_back({a.x(), a.y(), b.x(), b.y(), (a.z() + b.z()) / 2 + nearer, color,
+                            static_cast<float>(wide * width)});
+    };
+    for (const RodCopy& rod : structure_.rod_copies) add_line(rod.a, rod.b, width_);
+    for (const ShownLine& line : lines_) add_line(line.a, line.b, 0.5 * width_);
+    for (std::size_t i = 0; i < loose_.size(); ++i) {
+      if (!loose_[i]) continue;
+      const Vec3 at = view_.project(pose_node(x, static_cast<int>(i)));
+      p.dots.push_back({at.x(), at.y(), at.z() + nearer, color, static_cast<float>(1.4 * wide * width_)});
+    }
+  }
+
+ private:
+  const Structure& structure_;
+  PoseView view_;
+  std::vector<ShownLine> lines_;
+  std::vector<bool> loose_;
+  double width_ = 1;
+};
 
 }  // namespace
 
@@ -45,7 +76,7 @@ Figure mode_shapes_figure(const Structure& structure, const VectorXd& positions,
   const std::vector<std::size_t> drawn = drawn_modes(vibration);
   PoseBox rest;
   for (int i = 0; i < positions.size() / 3; ++i) rest.add(pose_node(positions, i));
-  const double amplitude = swing * rest.size().norm();
+  const double extent = rest.size().norm(), amplitude = swing * (extent > 0 ? extent : 1.0);
   PoseBox space = rest;
   std::vector<VectorXd> moved;
   for (const std::size_t k : drawn) {
@@ -64,14 +95,13 @@ Figure mode_shapes_figure(const Structure& structure, const VectorXd& positions,
   f.title = "Modes: " + title;
   f.columns = static_cast<int>(std::min<std::size_t>(drawn.size(), 3));
   f.rows = static_cast<int>((drawn.size() + 2) / 3);
-  const double many = std::sqrt(60.0 / static_cast<double>(structure.rod_copies.size()));
-  const auto width = static_cast<float>(std::clamp(1.3 * many, 0.4, 1.5));
+  const Shape shape(structure, view);
   for (std::size_t k = 0; k < drawn.size(); ++k) {
     Panel p;
     p.title = mode_title(vibration.modes[drawn[k]], drawn[k]);
     p.bare = p.equal_scale = true;
-    add_rods_at(structure, view, positions, pose_color, 0.6f * width, -1e3 * size.norm(), p);
-    add_rods_at(structure, view, moved[k], shape_color, width, 0.0, p);
+    shape.add(positions, pose_color, 0.6, -1e3 * size.norm(), p);
+    shape.add(moved[k], shape_color, 1.0, 0.0, p);
     p.x.min = page.lo.x() - 0.02 * size.x(), p.x.max = page.hi.x() + 0.02 * size.x();
     p.y.min = page.lo.y() - 0.02 * size.y(), p.y.max = page.hi.y() + 0.02 * size.y();
     f.panels.push_back(std::move(p));
