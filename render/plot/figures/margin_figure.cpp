@@ -18,6 +18,8 @@ double along(const Margin& margin, double fold_angle, double s) {
 
 // Values of all sources at a pose, those of one sign above each other.
 void add_stack(const Margin& margin, double sign, Panel& panel) {
+  double largest = 0;
+  for (const MarginPoint& p : margin.points) largest = std::max(largest, p.forces.lpNorm<Eigen::Infinity>());
   std::vector<double> floor(margin.points.size(), 0.0);
   for (std::size_t k = 0; k < margin.sources.size(); ++k) {
     Band band{margin.sources[k].name, {}, {}, {}, static_cast<int>(k)};
@@ -25,7 +27,7 @@ void add_stack(const Margin& margin, double sign, Panel& panel) {
     for (std::size_t i = 0; i < margin.points.size(); ++i) {
       const MarginPoint& p = margin.points[i];
       const double own = sign * std::max(0.0, sign * p.forces[static_cast<Index>(k)]);
-      any = any || own != 0;
+      any = any || std::abs(own) > 1e-12 * largest;  // less is rounding
       band.x.push_back(along(margin, p.fold_angle, p.s));
       band.lower.push_back(std::min(floor[i], floor[i] + own));
       band.upper.push_back(std::max(floor[i], floor[i] + own));
@@ -87,7 +89,11 @@ Figure margin_figure(const Margin& margin, const std::string& title) {
     return std::ranges::any_of(curve.y, [](double y) { return std::isfinite(y); });
   };
   const bool any = shown(still) || shown(moving);
-  margins.curves = {std::move(still), std::move(moving)};
+  std::string high;  // what is above the panel everywhere
+  if (any && !shown(still)) high = "static";
+  if (any && !shown(moving)) high = "dynamic";
+  for (Curve* curve : {&still, &moving})
+    if (shown(*curve)) margins.curves.push_back(std::move(*curve));
   margins.lines.push_back({0.0, true, "", zero_line});
   Figure figure{"margin", "Margins: " + title, "", 2, 1, {std::move(forces), std::move(margins)}};
   figure.height_mm = 150;
@@ -105,6 +111,7 @@ Figure margin_figure(const Margin& margin, const std::string& title) {
                                         (folds ? " deg" : "")) +
                    ".";
   if (!any) figure.caption += " No margin is as low as 20, and none is drawn.";
+  if (!high.empty()) figure.caption += " No " + high + " margin is as low as 20, and none is drawn.";
   for (const MarginSource& source : margin.sources)
     if (source.factor != 1.0)
       figure.caption += " " + source.name + " times " + plot::format_number(source.factor, 4) + ".";

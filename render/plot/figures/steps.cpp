@@ -100,9 +100,9 @@ Figure steps_figure(const Simulation& run, const Diagnostics& diagnostics) {
     const auto [lo, hi] = std::minmax_element(h.begin(), h.end());
     left.x.log = *hi > 10 * *lo;
     add_bars(histogram(h, step_edges(h, left.x.log)), 0, left);
-    const double most = std::max(1.0, *std::max_element(iterations.begin(), iterations.end()));
+    const double most = *std::max_element(iterations.begin(), iterations.end());
     std::vector<double> edges;
-    for (double x = -0.5; x < most + 1; ++x) edges.push_back(x);
+    for (double x = -0.5; x < std::max(1.0, most) + 1; ++x) edges.push_back(x);
     add_bars(histogram(iterations, std::move(edges)), 1, right);
     const std::string average = plot::format_number(mean(iterations), 3);
     const std::string shortest = plot::format_number(*lo, 3), longest = plot::format_number(*hi, 3);

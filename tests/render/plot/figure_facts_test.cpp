@@ -44,6 +44,11 @@ TEST_CASE("captions of adaptive runs name the step as what none is longer than",
   CHECK_THAT(f.caption, Contains(", adaptive steps, at most 0.01 s."));
 }
 
+TEST_CASE("steps without Newton iterations have none at most", "[figures]") {
+  const Figure f = of_library("steps", "pendulum", {"solver.method=rk4", "solver.end_time=0.5"});
+  CHECK_THAT(f.caption, Contains(", 0 Newton iterations a step on average, 0 at most; "));
+}
+
 // A ball that falls 0.9 m and keeps 0.9 of its speed: impacts come ever faster.
 TEST_CASE("many events of one name are pale lines, a few are as dark as curves", "[figures]") {
   const auto lines = [](const std::string& end) {

@@ -57,6 +57,24 @@ TEST_CASE("where no margin can be drawn there is no axis of margins", "[figure]"
   }
 }
 
+TEST_CASE("the legend of margins names what is drawn", "[figure]") {
+  for (const bool high : {false, true}) {
+    Margin margin;
+    margin.sources = {{"loads", "load"}, {"gravity", "gravity"}};
+    const VectorXd forces{{2.0, -3e-30}};  // gravity has no share but of rounding
+    margin.points = {{0.0, 1.2, forces, high ? 40.0 : 4.0}, {0.5, 0.6, forces, high ? 41.0 : 5.0}};
+    margin.worst = margin.points[0];
+    margin.motion = {{0.0, 0.0, 1.2, 0.1, 0.2, 0.1}, {0.25, 0.3, 0.9, 0.2, 0.3, 0.1}};
+    const Figure figure = margin_figure(margin, "a scene");
+    REQUIRE(figure.panels[0].bands.size() == 1);
+    CHECK(figure.panels[0].bands[0].label == "loads");
+    CHECK(figure.panels[1].curves.size() == (high ? 1 : 2));
+    CHECK(figure.panels[1].curves.back().label == "dynamic, along the motion");
+    CHECK((figure.caption.find(" No static margin is as low as 20, and none is drawn.") !=
+           std::string::npos) == high);
+  }
+}
+
 TEST_CASE("the caption of a margin tells what stops and latches bear", "[figure]") {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   Margin margin;
