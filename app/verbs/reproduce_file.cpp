@@ -49,6 +49,10 @@ std::vector<std::string> only(const std::string& file, const std::string& verb) 
     return {"--frames", std::to_string(k) + ":" + std::to_string(k + 1)};
   }
   const bool page = stem == "viewer";
+  // A share beside the results of the whole sweep, whose command makes none.
+  if (const std::size_t of = stem.find("_of_");
+      verb == "sweep" && extension == ".csv" && stem.starts_with("sweep_") && of != std::string::npos)
+    return {"--shard", stem.substr(6, of - 6) + "/" + stem.substr(of + 4)};
   if (extension == ".glb" || page) words = {"--export", page ? "html" : "gltf"};
   // A film, and the report that shows it, need every frame.
   const bool film = stem == "report" || (stem == "animation" && extension != ".glb");

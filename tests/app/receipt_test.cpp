@@ -179,6 +179,27 @@ TEST_CASE("a sweep over variables is made again") {
   CHECK(receipt->scene.find("L = 1") != std::string::npos);
 }
 
+TEST_CASE("a share of a sweep is made again as a share, beside the whole") {
+  const ScratchDirectory dir;
+  for (const char* part : {"--shard=1/2", "--shard=2/2", "--merge"}) {
+    std::vector<std::string> words = {"sweep",     "pendulum",
+                                      "--vary",    "structure.angle=10,20,30",
+                                      "--measure", "max:kinetic_energy_J",
+                                      "--set",     "solver.end_time=0.1",
+                                      "-o",        dir / "out",
+                                      "--dpi",     "40",
+                                      "--quiet",   part};
+    if (words.back() == "--merge") words.push_back(dir / "out");
+    REQUIRE(run_program(words).code == 0);
+  }
+  for (const char* name : {"out/sweep_1_of_2.csv", "out/sweep_2_of_2.csv", "out/sweep.csv"}) {
+    const ProgramResult again = run_program({"reproduce", dir / name});
+    INFO(name << again.err);
+    CHECK(again.code == 0);
+    CHECK(again.out.starts_with("the same, byte by byte"));
+  }
+}
+
 TEST_CASE("reproduce exports what it makes again, where the command can") {
   const ScratchDirectory dir;
   REQUIRE(
