@@ -442,40 +442,16 @@ Structure build_structure(const Scene& scene) {
       surface_nodes(scene.surfaces[i], "surfaces[" + std::to_string(i) + "].nodes", structure);
   note_idle_joints(structure);
   note_idle_materials(scene, structure);
-  note_pins_between(structure);
-  bend_to_ends(structure, PinLoads::any(structure));
+  try {
+    note_pins_between(structure);
+    bend_to_ends(structure, PinLoads::any(structure));
+  } catch (const StructureError& error) {
+    refuse(scene, error);
+  }
   for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
   structure.notes.insert(structure.notes.end(), moves.begin(), moves.end());
   return structure;
 }
-
-namespace {
-
-// Rigid rods stand between their nodes as they are given: what warms them at t = 0 already has no place to
-// go.
-void refuse_warm_start(const Scene& scene, const Structure& structure) {
-  MemberFinder find(structure);
-  for (const SceneElement& e : scene.forces) {
-    if (e.kind != "temperature" || !e.enabled) continue;
-    for (const int r : find.rods(e)) {
-      const Rod& rod = structure.rods[static_cast<std::size_t>(r)];
-      const double warmed = rod.warmed(0.0),
-                   apart = (structure.nodes[static_cast<std::size_t>(rod.b)].position -
-                            structure.nodes[static_cast<std::size_t>(rod.a)].position)
-                               .norm();
-      // It fits better as if it were not warm.
-      if (rod.gives || std::abs(apart - rod.length) >= std::abs(apart - rod.length * (1 + warmed))) continue;
-      find.problem(e, e.values.vector("times").empty() ? "change" : "values",
-                   "warms the rigid rod " + in_quotes(rod.name) +
-                       " at t = 0 already, where its nodes stand as they are given: give times and values "
-                       "that begin with 0, or let the rod give (elastic = true)");
-      break;
-    }
-  }
-  find.throw_problems();
-}
-
-}  // namespace
 
 std::shared_ptr<const Model> build_model(const Scene& scene) {
   try {

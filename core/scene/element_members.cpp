@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/scene/scene.hpp"
 #include "core/structure/measure.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/text/nearest_name.hpp"
@@ -366,6 +367,28 @@ void add_elements(const std::vector<SceneElement>& elements, const std::vector<E
   for (const SceneElement& element : elements)
     if (element.enabled) find_kind(kinds, element.kind)->add(element, adder);
   adder.find.throw_problems();
+}
+
+void refuse_warm_start(const Scene& scene, const Structure& structure) {
+  MemberFinder find(structure);
+  for (const SceneElement& e : scene.forces) {
+    if (e.kind != "temperature" || !e.enabled) continue;
+    for (const int r : find.rods(e)) {
+      const Rod& rod = structure.rods[static_cast<std::size_t>(r)];
+      const double warmed = rod.warmed(0.0),
+                   apart = (structure.nodes[static_cast<std::size_t>(rod.b)].position -
+                            structure.nodes[static_cast<std::size_t>(rod.a)].position)
+                               .norm();
+      // It fits better as if it were not warm.
+      if (rod.gives || std::abs(apart - rod.length) >= std::abs(apart - rod.length * (1 + warmed))) continue;
+      find.problem(e, e.values.vector("times").empty() ? "change" : "values",
+                   "warms the rigid rod " + in_quotes(rod.name) +
+                       " at t = 0 already, where its nodes stand as they are given: give times and values "
+                       "that begin with 0, or let the rod give (elastic = true)");
+      break;
+    }
+  }
+  find.throw_problems();
 }
 
 }  // namespace unfurl

@@ -124,6 +124,10 @@ std::optional<Measure> measure_of(const SceneElement& element, MemberFinder& fin
 // An angle that may grow: without an axis not one of rods in line.
 std::optional<Measure> driven_angle(const SceneElement& element, MemberFinder& find);
 
+// Throws SceneError: rigid rods stand between their nodes as they are given, and what warms them at t = 0
+// already has no place to go.
+void refuse_warm_start(const Scene& scene, const Structure& structure);
+
 // Kinds of [[constraints]] that combine measures in one row, and those that hold, drive or bound a measure.
 const std::vector<ElementKind>& combined_kinds();
 const std::vector<ElementKind>& measured_kinds();

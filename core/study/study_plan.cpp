@@ -39,7 +39,8 @@ Simulation trusted_probe(const std::shared_ptr<const Model>& model, SolverOption
     if (doubt.empty()) return probe;
     if (why.empty()) why = doubt;
   }
-  throw ReferenceError("the scene as it stands does not run (" + why + "); a study needs a motion to measure");
+  throw ReferenceError("the scene as it stands does not run (" + why +
+                       "); a study needs a motion to measure");
 }
 
 }  // namespace

@@ -79,8 +79,8 @@ TEST_CASE("study refuses ladders that are none") {
 
 TEST_CASE("study compares models: a sector moves as the whole, for less") {
   const ScratchDirectory dir;
-  const ProgramResult r = run_program({"study", "hoop6", "--models", "--set", "solver.end_time=0.5",
-                                       "--repeats", "1", "-o", dir / "out"});
+  const ProgramResult r = run_program(
+      {"study", "hoop6", "--models", "--set", "solver.end_time=0.5", "--repeats", "1", "-o", dir / "out"});
   CHECK(r.code == 0);
   CHECK(lines(file_text(dir / "out/models.csv")) == 12);
   CHECK(r.err.find("| sector: one sector solved, all shown | 4 | 3 |") != std::string::npos);
