@@ -209,7 +209,8 @@ TEST_CASE("the name of a rod that was cut names all of its parts") {
   CHECK(warmed("'*-C'") == "B-C.1 B-C.2 B-C.3 ");
   CHECK(warmed("'A-B.2', 'B-C'") == "A-B.2 B-C.1 B-C.2 B-C.3 ");
   CHECK_THROWS_WITH(warmed("'A-D'"), Catch::Contains("no group 'A-D'; did you mean 'A-B'?"));
-  // The angle between two rods is that of the parts at the node that they share.
+  // The angle between two rods is that of their tangents at the node that they share, through the first two
+  // nodes within each.
   const Structure s = build_structure(
       read_scene_text(column + "[[forces]]\nkind = 'torsion_spring'\nstiffness = 5\nrods = ['A-B', 'B-C']\n",
                       "s.toml", {"structure.segments=3"}));
@@ -218,7 +219,7 @@ TEST_CASE("the name of a rod that was cut names all of its parts") {
   REQUIRE(spring != s.forces.end());
   std::vector<std::string> at;
   for (const int node : spring->measure.nodes) at.push_back(s.nodes[static_cast<std::size_t>(node)].name);
-  CHECK(at == std::vector<std::string>{"B", "A-B.2", "B", "B-C.1"});
+  CHECK(at == std::vector<std::string>{"B", "A-B.2", "B", "B-C.1", "A-B.1", "B-C.2"});
 }
 
 }  // namespace segments_test
