@@ -361,7 +361,7 @@ TEST_CASE("what a long run that is cut says of forces without bound is of what i
   REQUIRE(std::ranges::count_if(expected, [](const std::string& text) {
             return text.find("grows without bound towards a singular pose") != std::string::npos;
           }) == 1);
-  for (const std::size_t states : {400, 900, 1300}) {
+  for (const std::size_t states : {400UL, 900UL, 1300UL}) {
     INFO(states);
     Windows w = windows_of(scene, states);
     RunDigest digest(model, scene.solver);
