@@ -70,6 +70,19 @@ RunDigest behind_checkpoint(RunDigest& digest, const Scene& scene) {
   return again;
 }
 
+// What is said in the end by digests that were archived behind every part.
+Digest from_checkpoint_to_checkpoint(Windows& w, const std::shared_ptr<const Model>& model,
+                                     const Scene& scene) {
+  RunDigest digest(model, scene.solver);
+  for (Stepper::Window& part : w.parts) {
+    digest.add(part.run, part.first, part.last);
+    digest.settle();
+    digest = behind_checkpoint(digest, scene);
+  }
+  digest.add(w.rest, w.first, w.rest.trajectory.size());
+  return digest.whole(w.rest);
+}
+
 }  // namespace
 
 TEST_CASE("energy lost in impacts is a column where impacts can happen, whether they do or not") {
@@ -298,14 +311,7 @@ TEST_CASE("that forces have no bound in the deployed pose is told of a long run 
   CHECK(expected[0].find("grow without bound towards the deployed pose") != std::string::npos);
   Windows w = windows_of(scene, 40);
   REQUIRE(w.parts.size() >= 4);
-  RunDigest digest(model, scene.solver);
-  for (Stepper::Window& part : w.parts) {
-    digest.add(part.run, part.first, part.last);
-    digest.settle();
-    digest = behind_checkpoint(digest, scene);
-  }
-  digest.add(w.rest, w.first, w.rest.trajectory.size());
-  const Digest whole = digest.whole(w.rest);
+  const Digest whole = from_checkpoint_to_checkpoint(w, model, scene);
   CHECK(accuracy_warnings(whole.run, whole.diagnostics) == expected);
 }
 
@@ -364,14 +370,7 @@ TEST_CASE("what a long run that is cut says of forces without bound is of what i
   for (const std::size_t states : {400UL, 900UL, 1300UL}) {
     INFO(states);
     Windows w = windows_of(scene, states);
-    RunDigest digest(model, scene.solver);
-    for (Stepper::Window& part : w.parts) {
-      digest.add(part.run, part.first, part.last);
-      digest.settle();
-      digest = behind_checkpoint(digest, scene);
-    }
-    digest.add(w.rest, w.first, w.rest.trajectory.size());
-    const Digest whole = digest.whole(w.rest);
+    const Digest whole = from_checkpoint_to_checkpoint(w, model, scene);
     CHECK(whole.run.trajectory.end_time() == Approx(run.trajectory.end_time()).margin(1e-9));
     CHECK(warnings_of(whole.run, whole.diagnostics) == expected);
   }
