@@ -170,17 +170,19 @@ double size_of_motion(const Model& model, const Trajectory& trajectory) {
 }
 
 Reference solve_reference(const std::shared_ptr<const Model>& model, double end, int intervals,
-                          const StudyHooks& hooks, double goal) {
-  double size = structure_size(*model);
+                          const StudyHooks& hooks, double enough) {
   const Index in_space = space_coordinates(model->structure);
   for (const TimeEdge& edge : time_edges(model->structure, end / intervals))
     if (edge.impact && edge.t > 0 && edge.t < end)
       throw ReferenceError("there is no reference across the time of " + short_number(edge.t, 6) +
                            " s, where the velocity or the acceleration of a drive jumps; an earlier "
                            "solver.end_time, or a ramp, helps");
-  goal = std::max(goal, 64 * std::numeric_limits<double>::epsilon() * size);
-  Best best = tighten(extrapolated(*model, end, intervals, hooks), goal);
-  if (best.solution && !(size > 0)) size = farthest(*best.solution, in_space);
+  const Ladder steps = extrapolated(*model, end, intervals, hooks);
+  double size = structure_size(*model);
+  if (!(size > 0))
+    if (const Solution coarse = steps.solve(0)) size = farthest(*coarse, in_space);
+  const double goal = std::max(enough, 64 * std::numeric_limits<double>::epsilon()) * size;
+  Best best = tighten(steps, goal);
   double apart = std::numeric_limits<double>::infinity();
   Reference out;
   out.how = "Bulirsch-Stoer extrapolation of order 16 on the index-1 equations with " +

@@ -53,9 +53,9 @@ struct Reference {
 // Solutions of one kind share much, their round-off above all: the other method is then brought as near as it
 // comes. Throws ReferenceError where no two solutions, or not both methods, agree to a millionth of the
 // structure's size; Cancelled.
-// `goal`: an agreement that is enough [m]; 0: round-off.
+// `enough`: an agreement that is enough, of the size; 0: round-off.
 Reference solve_reference(const std::shared_ptr<const Model>& model, double end, int intervals,
-                          const StudyHooks& hooks, double goal = 0);
+                          const StudyHooks& hooks, double enough = 0);
 
 // Largest distance between equal nodes of two configurations [m].
 double node_distance(const ConstVec& a, const ConstVec& b);

@@ -105,11 +105,10 @@ void prepare(Site& site, int intervals, const StudyHooks& hooks) {
   try {
     SolverOptions options;
     site.model = site.extreme->build(site.value, options);
-    const double enough = 1e-6 * structure_size(*site.model);
     Duration motion = duration(site, options, hooks);
     if (const double plain = plain_part(site, options, motion.end, hooks); plain < motion.end)
       motion = {plain};
-    Reference reference = solve_reference(site.model, motion.end, intervals, hooks, enough);
+    Reference reference = solve_reference(site.model, motion.end, intervals, hooks, 1e-6);
     const Deployment& deployment = site.model->structure.deployment;
     if (motion.deploys && !(deployment.fraction(reference.q.back()) >= deployed_share))
       throw ReferenceError("the reference has not deployed at " + short_number(motion.end) + " s");

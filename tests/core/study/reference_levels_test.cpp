@@ -54,7 +54,7 @@ TEST_CASE("a reference is the first of its solutions that agrees with the one be
       const double d = apart(all[all.size() - 1], all[all.size() - 2]);
       if (!(d < 5e-7) || d < 1e-12) continue;  // as near as a reference has to be, and above round-off
       INFO(intervals << " intervals, level " << level << ": " << d << " m");
-      const Reference r = solve_reference(model, end, intervals, {}, 1.5 * d);
+      const Reference r = solve_reference(model, end, intervals, {}, 1.5 * d / structure_size(*model));
       CHECK(r.how == "Bulirsch-Stoer extrapolation of order 16 on the index-1 equations with " +
                          std::to_string(intervals << level) + " basic steps");
       // Round-off of some 40 steps, larger than that of single ones by the growth in a swing.

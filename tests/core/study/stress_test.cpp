@@ -52,6 +52,7 @@ TEST_CASE("one node alone is judged by the way that it goes") {
   plan.extremes[0].values = {1};
   plan.settings.resize(3);
   plan.steps = {256};
+  plan.long_steps = 0;
   Journal journal({}, stress_columns(), stress_key_columns);
   const Stress stress = run_stress(plan, journal, {});
   REQUIRE(stress.cells.size() == 3);
