@@ -51,6 +51,7 @@ class Index1 {
   bool assemble(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension = {});
   bool solve(double t, const ConstVec& w, MutVec acceleration, MutVec lambda);
   void settle(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y);
+  void answer(const VectorXd& rows, VectorXd& x, VectorXd& y);
   void move_rates(State& state, VectorXd& rows, VectorXd& x, VectorXd& y);
   const System& system_;
   SparseRows G_;

@@ -70,6 +70,9 @@ class SaddleSolver {
   // is not finite, or whose norm overflows, gives NaN everywhere.
   double solve(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y, int max_refinements = 8) const;
 
+  // x of f = 0 alone, in twice the digits (fine()), for a third less.
+  void solve_motion(const ConstVec& g, MutVec x) const;
+
   // Whether what the last solve left is of a direction that the rows do reach: of a singular value below
   // sqrt(e) refinement takes less than a half, and is given up, as it is where right-hand sides contradict
   // each other.
@@ -95,7 +98,7 @@ class SaddleSolver {
   static constexpr double most_growth = 1e7;
   static bool grown(double largest_pivot) { return !(largest_pivot < most_growth); }
   void apply_finely(double* f, double* g, int columns) const;
-  void solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) const;
+  void solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y, int most_passes = 10) const;
 
   Index n_ = 0, m_ = 0;
   VectorXd column_scale_, row_scale_;  // D, R

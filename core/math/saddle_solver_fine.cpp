@@ -147,8 +147,9 @@ void SaddleSolver::apply_finely(double* f, double* g, int columns) const {
 // multipliers, as above, again and again: round-off d of redundant rows, a singular value, makes 3 d / e of
 // multipliers that nothing determines, of which each time leaves 3 d^2 / e: 1e-8 of 1e7 where it is 1e-16,
 // 1e-4 of 1e9 where many rows of a ring depend on each other and it is 2e-14.
-void SaddleSolver::solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) const {
-  constexpr int most_passes = 10;
+// One pass leaves the motion right, whose rows are those that it can reach.
+void SaddleSolver::solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y,
+                                int most_passes) const {
   constexpr double settled = 1e-10;  // multipliers, of the largest
   Fine& fine = *fine_;
   const auto place = [this](Index i) {
@@ -192,6 +193,11 @@ void SaddleSolver::solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, 
   }
   for (Index i = 0; i < n_; ++i) x[i] = static_cast<double>(fine.x[place(i)] * column_scale_[i]);
   for (Index i = 0; i < m_; ++i) y[i] = static_cast<double>(fine.x[place(n_ + i)] * row_scale_[i]);
+}
+
+void SaddleSolver::solve_motion(const ConstVec& g, MutVec x) const {
+  VectorXd y(m_);
+  solve_finely(VectorXd::Zero(n_), g, x, y, 1);
 }
 
 }  // namespace unfurl
