@@ -49,18 +49,40 @@ class Stretch {
     if (!index1_.evaluate_closely(state, acceleration, lambda, of_forces) || !by(state, lambda, u))
       return false;
     VectorXd rows(lambda.size()), weakest(lambda.size()), x(state.z.size()), change(u.size());
-    const VectorXd none = VectorXd::Zero(x.size());
     for (Index r = 0; r < rows.size(); ++r) rows[r] = std::cos(1.0 + static_cast<double>(r));
-    saddle_.solve(none, rows, x, weakest);
-    rows.noalias() = G_ * x;  // without what redundant rows hold of it
-    saddle_.solve(none, rows, x, weakest);
+    answer(rows, x, weakest);
     for (Index r = 0; r < rows.size(); ++r) of_forces[r] = std::copysign(of_forces[r], weakest[r]);
     if (!expand(of_forces, change)) return false;
     doubt = change.lpNorm<Eigen::Infinity>();
     return true;
   }
 
+  // The largest coordinate of what the constraints' second order in u moves the state on by [m].
+  double second_order(const State& state, const VectorXd& u) {
+    VectorXd q(u.size()), rows(G_.rows()), there(G_.rows()), x(state.z.size());
+    system_.follow(state);
+    system_.expand(state.z, q);
+    system_.jacobian(q, G_, scratch_);
+    if (!saddle_.factorise(G_)) return std::numeric_limits<double>::infinity();
+    system_.constraint(state.t, q, rows);
+    for (const VectorXd& end : {VectorXd(q + u), VectorXd(q - u)}) {
+      system_.constraint(state.t, end, there);
+      rows -= 0.5 * there;
+    }
+    answer(rows, x, there);
+    system_.expand_rate(x, q);
+    return q.lpNorm<Eigen::Infinity>();
+  }
+
  private:
+  // Without what redundant rows hold of it.
+  void answer(VectorXd& rows, VectorXd& x, VectorXd& y) {
+    const VectorXd none = VectorXd::Zero(x.size());
+    saddle_.solve(none, rows, x, y);
+    rows.noalias() = G_ * x;
+    saddle_.solve(none, rows, x, y);
+  }
+
   bool by(const State& state, VectorXd& lambda, VectorXd& u) {
     VectorXd q(system_.coordinates());
     system_.expand(state.z, q);
@@ -118,8 +140,9 @@ class StretchedRun {
     for (const auto& [i, doubt] : odd) interpolate(i, doubt);
     for (std::size_t i = 1; i < u_.size(); ++i)
       if (!own[i]) u_[i] = limit(i);
+    bool small = true;
     for (std::size_t i = 0; i < u_.size(); ++i)
-      if (!is_small(i)) u_[i].setZero();
+      if (small = is_small(i, small); !small) u_[i].setZero();
     return std::move(u_);
   }
 
@@ -222,10 +245,12 @@ class StretchedRun {
     return best;
   }
 
-  // Of first order in what rods are longer by: what is of second order in the displacement, how far it turns
-  // them, makes none of them longer by more than the largest of that. Next to a pose in which rods lie in
-  // line, where the displacement is 1 / sine, it would.
-  bool is_small(std::size_t i) const {
+  // Of first order: what the second order of the displacement adds is less than that. Next to a pose in which
+  // rods lie in line, where the displacement is 1 / sine, it is more. It is looked at where turning makes a
+  // rod longer by some part of what rods give: turns add up along a mast, and are none there. A singular pose
+  // is as the one before it, from which its displacement comes.
+  bool is_small(std::size_t i, bool before) {
+    constexpr double negligible = 0.01;
     const VectorXd q = trajectory_.node_positions(i);
     double first = 0, second = 0;
     for (const Rod& rod : trajectory_.model(i).structure.rods) {
@@ -235,7 +260,9 @@ class StretchedRun {
       first = std::max(first, std::abs(longer));
       second = std::max(second, (u.squaredNorm() - longer * longer) / (2 * along.norm()));
     }
-    return second <= first;
+    if (second <= negligible * first) return true;
+    if (trajectory_.report(i).singular_event) return before;
+    return at(i).second_order(trajectory_.state(i), u_[i]) <= size(i);
   }
 
   double size(std::size_t i) const { return u_[i].lpNorm<Eigen::Infinity>(); }

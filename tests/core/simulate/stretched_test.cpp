@@ -215,6 +215,54 @@ end_time = 0.6
   CHECK(v.modes[0].frequency == Approx(std::sqrt((k1 + k2) / 3) / (2 * pi)).epsilon(1e-9));
 }
 
+// A cantilever truss of n bays of 1 m x 1 m under P at its tip: by virtual work, with the chords' forces k P
+// of bay k and (k - 1) P, sqrt(2) P of diagonals and P of posts,
+//
+//     u = P / (E A) (sum of k^2 + (k - 1)^2, and n (2 sqrt(2) + 1))
+//
+// down. Its rods' strains are n P / (E A) at most, while the turns add up to n times that: what a turn makes
+// a rod longer by is more than what rods give from n of some 2 / sqrt(strain) on, though no rod turns by much
+// beside its neighbour. Of second order the tip comes back along the mast by some u^2 / n.
+TEST_CASE("turns that add up along a mast are no displacement that is too large") {
+  constexpr double P = 100, stiffness = 1e7;
+  for (const int bays : {4, 20, 60}) {
+    const std::string n = number(bays);
+    const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+rod_model = "quasi-static"
+youngs_modulus = 1e11
+nodes = [{repeat = {i = "0:)" + n + R"("}, name = "A{i+1}", position = ["=i+1", 0, 0], mass = 1},
+         {repeat = {i = "0:)" + n + R"("}, name = "B{i+1}", position = ["=i+1", 0, 1], mass = 1},
+         {name = "A0", position = [0, 0, 0], fixed = true}, {name = "B0", position = [0, 0, 1], fixed = true},
+         {name = "O", position = [0, 9, 0], fixed = true}, {name = "M", position = [1, 9, 0], mass = 1}]
+rods = [{repeat = {i = "0:)" + n + R"("}, nodes = ["A{i}", "A{i+1}"], mass = 0, area = 1e-4},
+        {repeat = {i = "0:)" + n + R"("}, nodes = ["B{i}", "B{i+1}"], mass = 0, area = 1e-4},
+        {repeat = {i = "0:)" + n + R"("}, nodes = ["A{i+1}", "B{i+1}"], mass = 0, area = 1e-4},
+        {repeat = {i = "0:)" + n + R"("}, nodes = ["B{i}", "A{i+1}"], mass = 0, area = 1e-4},
+        {nodes = ["O", "M"], mass = 0, elastic = false}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["A*", "B*", "M"]
+normal = [0, 1, 0]
+[[loads]]
+nodes = ["B)" + n + R"("]
+force = [0, 0, -100]
+[solver]
+step = 0.01
+end_time = 0.02
+)");
+    INFO(bays << " bays: " << run.message);
+    REQUIRE(run.status == RunStatus::completed);
+    double sum = bays * (2 * std::sqrt(2.0) + 1);
+    for (int k = 1; k <= bays; ++k) sum += k * k + (k - 1) * (k - 1);
+    const VectorXd u = stretch(run, run.trajectory.size() - 1);
+    // The mast's weakest direction is some 1 / n^2, whose square divides round-off of 1e-16 in the rows.
+    CHECK(u[3 * (2 * bays - 1) + 2] == Approx(-P / stiffness * sum).epsilon(1e-8));
+    CHECK(accuracy_warnings(run, diagnose(run)).empty());
+  }
+}
+
 // Where rods lie in line u of G u = C lambda is 1 / sine, and a state is as near to that pose as the step
 // happens to bring it: nodes were shown a metre off. Whatever the step, a rod is shown as long as its
 // force says, N l / (E A), up to as much again by what the largest of these turns it; or as it is, and said.
