@@ -444,7 +444,7 @@ Structure build_structure(const Scene& scene) {
   note_idle_materials(scene, structure);
   try {
     note_pins_between(structure);
-    bend_to_ends(structure, PinLoads::any(structure));
+    bend_to_ends(structure, PinLoads::any(structure), scene.solver.at_deployed == "latch");
   } catch (const StructureError& error) {
     refuse(scene, error);
   }

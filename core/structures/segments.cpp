@@ -99,12 +99,12 @@ class Cutter {
 };
 
 template <class Visit>
-void visit_measures(Structure& structure, const Visit& visit) {
-  const auto look = [&](Measure& measure) {
-    visit(measure);
-    for (MeasureTerm& term : measure.terms) visit(term.measure);
+void visit_measures(Structure& structure, bool locks_deployed, const Visit& visit) {
+  const auto look = [&](Measure& measure, bool acts = true) {
+    visit(measure, acts);
+    for (MeasureTerm& term : measure.terms) visit(term.measure, acts);
   };
-  look(structure.deployment.measure);
+  look(structure.deployment.measure, locks_deployed);
   for (Force& force : structure.forces) look(force.measure);
   for (Constraint& c : structure.constraints) look(c.measure);
   for (Stop& stop : structure.stops) look(stop.measure);
@@ -112,13 +112,13 @@ void visit_measures(Structure& structure, const Visit& visit) {
 
 }  // namespace
 
-void bend_to_ends(Structure& structure, bool by_pin) {
+void bend_to_ends(Structure& structure, bool by_pin, bool locks_deployed) {
   std::set<std::vector<int>> ends;  // end, first and second node within
-  visit_measures(structure, [&](Measure& measure) {
+  visit_measures(structure, locks_deployed, [&](Measure& measure, bool acts) {
     auto& n = measure.nodes;
     if (n.size() < 6) return;
     for (const std::size_t line : {0U, 1U})
-      if (n[4 + line] != n[2 * line + 1]) ends.insert({n[2 * line], n[2 * line + 1], n[4 + line]});
+      if (acts && n[4 + line] != n[2 * line + 1]) ends.insert({n[2 * line], n[2 * line + 1], n[4 + line]});
     if (by_pin) n.resize(4);
   });
   if (ends.empty()) return;

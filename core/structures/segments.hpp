@@ -19,8 +19,9 @@ void cut_rods(Structure& structure, const std::vector<long>& segments);
 // left out, as pins leave no moment there. Where an angle of six nodes (measure.cpp) acts on a rod's end, it
 // takes the tangent of a rod that bends there as it does at the first node, from that on back to the end:
 // with 1.5 of the parts to bend the stiffness there is that much larger, and deflections are right to the
-// second order in 1/k. Friction by the force of a pin needs the first part's own direction: where a structure
+// second order in 1/k. What is measured only, how far a structure is deployed that is not locked there, makes
+// nothing stiffer. Friction by the force of a pin needs the first part's own direction: where a structure
 // has it (by_pin), angles are those of the parts, of first order, and a note says so.
-void bend_to_ends(Structure& structure, bool by_pin);
+void bend_to_ends(Structure& structure, bool by_pin, bool locks_deployed);
 
 }  // namespace unfurl

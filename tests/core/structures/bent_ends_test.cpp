@@ -48,6 +48,30 @@ TEST_CASE("segments: a cantilever held by an angle is right to the second order,
     }
 }
 
+TEST_CASE("segments: an angle that is only measured bends nothing") {
+  const auto lowest = [](const std::string& more) {
+    const auto model = testing::model_of(
+        "[structure]\nkind = 'custom'\nrod_model = 'elastic'\n"
+        "nodes = [{name = 'C', position = [0, 0, -1], fixed = true}, {name = 'A', position = [0, 0, 0], "
+        "fixed "
+        "= true}, {name = 'B', position = [1, 0, 0]}]\n"
+        "rods = [{name = 'R', nodes = ['A', 'B'], mass = 1, area = 1e-4, youngs_modulus = 2e11, segments = "
+        "4}, {name = 'S', nodes = "
+        "['A', 'C'], mass = 1}]\n"
+        "constraints = [{kind = 'plane', nodes = ['R.*', 'B'], normal = [0, 1, 0]}, {kind = 'plane', nodes = "
+        "['B'], normal = [0, 0, 1]}]\n" +
+        more);
+    return vibration(*model, initial_state(model->structure, model->system).state).modes.front().frequency;
+  };
+  // A pinned beam: pi/2 sqrt(E I / m l^3), of which four parts have 0.9997.
+  const double I = 1e-8 / (4 * pi), plain = lowest("");
+  CHECK(plain == Approx(pi / 2 * std::sqrt(2e11 * I)).epsilon(1e-3));
+  const std::string opens = "[deployment]\nmeasure = 'angle B A C about 0 1 0'\ndeployed = 200\n";
+  CHECK(lowest(opens) == Approx(plain).epsilon(1e-12));
+  // Locked there it is held by it, which it is to bend for.
+  CHECK(lowest(opens + "[solver]\nat_deployed = 'latch'\n") > 1.02 * plain);
+}
+
 // Its half at either end, as if it were not cut: both masses stay.
 TEST_CASE("offload of nodes by name holds rods that are cut, and one node hangs on one rope") {
   const std::string hung = R"([structure]
