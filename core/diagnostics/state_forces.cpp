@@ -136,11 +136,14 @@ StateForces::Close StateForces::limit_behind(std::size_t i) const {
   return out;
 }
 
-// Whether two states have one pose, to rounding: those between tell no more of it.
-bool StateForces::rests(std::size_t i, std::size_t k) const {
+// Whether these states have the pose of state i, to rounding: they tell no more of it.
+bool StateForces::rests(std::size_t i, const std::vector<std::size_t>& states) const {
   constexpr double rounding = 1e-13;
-  const VectorXd &a = trajectory_.state(i).z, &b = trajectory_.state(k).z;
-  return (a - b).lpNorm<Eigen::Infinity>() <= rounding * a.lpNorm<Eigen::Infinity>();
+  const VectorXd& pose = trajectory_.state(i).z;
+  return std::ranges::all_of(states, [&](std::size_t k) {
+    return (pose - trajectory_.state(k).z).lpNorm<Eigen::Infinity>() <=
+           rounding * pose.lpNorm<Eigen::Infinity>();
+  });
 }
 
 // By the polynomial through three poses on either side, as near as they are in a thousandth of the doubt, or
@@ -156,7 +159,7 @@ void StateForces::interpolate(std::size_t i, Close& here) {
   const bool ends = limit.point.known, one_way = behind.empty(), at_end = one_way && !ends;
   const std::vector<std::size_t> before = beside(i, -1, one_way ? far_from_end : far);
   if (before.empty() || (at_end && before.size() <= far)) return;  // single states are no run's end
-  if (rests(i, before.back()) && rests(i, behind.empty() ? i : behind.back())) return;
+  if (rests(i, before) && rests(i, behind)) return;
   const double t = trajectory_.time(i);
   const auto both = [&](std::size_t first, std::size_t last) {
     return one_way ? t - trajectory_.time(first)

@@ -53,7 +53,7 @@ class StateForces {
   };
   Close look_closely(std::size_t model_of, const State& state);
   Close limit_behind(std::size_t i) const;
-  bool rests(std::size_t i, std::size_t k) const;
+  bool rests(std::size_t i, const std::vector<std::size_t>& states) const;
   void interpolate(std::size_t i, Close& here);
 
   // States whose solutions are kept: those around the one that is asked for.
