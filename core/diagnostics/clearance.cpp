@@ -37,6 +37,7 @@ class ClearanceScan {
     for (const RodCopy& copy : rods_) {
       const Rod& rod = trajectory.structure().rods[static_cast<std::size_t>(copy.source)];
       radius_.push_back(rod.radius);
+      if (rod.radius > 0) thinnest_ = std::min(thinnest_, 2 * rod.radius);
       const bool goes_on = !wholes_.empty() && wholes_.back().size() < static_cast<std::size_t>(rod.parts) &&
                            !rod.whole.empty() && rod.whole == last_whole_;
       if (!goes_on) wholes_.emplace_back();
@@ -51,20 +52,27 @@ class ClearanceScan {
   void look(std::size_t i) {
     q_ = trajectory_.positions(i);
     if (!q_.allFinite()) return;
-    sort_by_place();
-    for (std::size_t k = 0; k < order_.size(); ++k)
-      for (std::size_t l = k + 1; l < order_.size(); ++l) {
-        // What begins farther on can be no nearer than this, nor can what comes behind it.
-        if (low_[order_[l]] - high_[order_[k]] > std::max(best_.distance, 0.0)) break;
-        compare(std::min(order_[k], order_[l]), std::max(order_[k], order_[l]), trajectory_.time(i));
-      }
+    look_at_pose(trajectory_.time(i));
     ++best_.states;
   }
 
+  // Between state i and the next, so often that no node goes farther than the thinnest rod is thick: two of
+  // these that pass through each other are seen to.
+  void look_behind(std::size_t i) {
+    constexpr double most_poses = 64;
+    const VectorXd way = trajectory_.positions(i + 1) - trajectory_.positions(i);
+    if (!way.allFinite() || way.size() == 0 || !std::isfinite(thinnest_)) return;
+    const double farthest = way.reshaped(3, way.size() / 3).colwise().norm().maxCoeff();
+    const auto parts = static_cast<int>(std::min(std::ceil(farthest / thinnest_), most_poses));
+    const double t = trajectory_.time(i), step = (trajectory_.time(i + 1) - t) / parts;
+    for (int k = 1; k < parts; ++k) {
+      q_ = trajectory_.positions_at(t + k * step);
+      look_at_pose(t + k * step);
+    }
+  }
   // The nearest pair between the states beside the one where it was nearest, by golden sections.
   std::optional<Clearance> refined(std::size_t states) {
     if (!found_) return std::nullopt;
-    best_.overlapping = overlapping_.size();
     const auto a = static_cast<std::size_t>(best_.rod_a), b = static_cast<std::size_t>(best_.rod_b);
     const std::size_t i = trajectory_.state_before(best_.t);
     double lo = trajectory_.time(i > 0 ? i - 1 : i), hi = trajectory_.time(std::min(i + 1, states - 1));
@@ -86,10 +94,22 @@ class ClearanceScan {
       best_.distance += least - best_.axes;
       best_.axes = least;
     }
+    if (best_.distance < 0) overlapping_.emplace(a, b);
+    best_.overlapping = overlapping_.size();
     return best_;
   }
 
  private:
+  void look_at_pose(double t) {
+    sort_by_place();
+    for (std::size_t k = 0; k < order_.size(); ++k)
+      for (std::size_t l = k + 1; l < order_.size(); ++l) {
+        // What begins farther on can be no nearer than this, nor can what comes behind it.
+        if (low_[order_[l]] - high_[order_[k]] > std::max(best_.distance, 0.0)) break;
+        compare(std::min(order_[k], order_[l]), std::max(order_[k], order_[l]), t);
+      }
+  }
+
   Vec3 node(const VectorXd& q, int n) const { return q.segment<3>(3 * Index(n)); }
   double axis_distance(std::size_t a, std::size_t b) const {
     return segment_distance(node(q_, rods_[a].a), node(q_, rods_[a].b), node(q_, rods_[b].a),
@@ -154,6 +174,7 @@ class ClearanceScan {
   const Trajectory& trajectory_;
   const std::vector<RodCopy>& rods_;
   std::vector<double> radius_, low_, high_;
+  double thinnest_ = std::numeric_limits<double>::infinity();  // of rods whose thickness is known
   // Rods that were cut have their parts one after the other: of each rod its whole, of each whole its parts.
   std::vector<std::size_t> whole_of_;
   std::vector<std::vector<std::size_t>> wholes_;
@@ -173,7 +194,10 @@ std::optional<Clearance> least_clearance(const Trajectory& trajectory, std::size
   states = std::min(states, trajectory.size());
   if (states == 0) return std::nullopt;
   ClearanceScan scan(trajectory);
-  for (std::size_t i = 0; i < states; ++i) scan.look(i);
+  for (std::size_t i = 0; i < states; ++i) {
+    scan.look(i);
+    if (i + 1 < states) scan.look_behind(i);
+  }
   return scan.refined(states);
 }
 

@@ -15,12 +15,13 @@ struct Clearance {
   double axes = 0;              // between their axes [m]
   int rod_a = 0, rod_b = 0;     // of the whole structure's rods, a before b
   double t = 0;                 // when, the first time [s]
-  std::size_t overlapping = 0;  // pairs whose surfaces overlap in one of the states at least
+  std::size_t overlapping = 0;  // pairs whose surfaces overlap in one of the poses at least
   std::size_t states = 0;       // that were looked at
 };
 
 /// Rods as cylinders of their radius (where it is not known, as lines) with round ends, at the first `states`
-/// states of a motion; of the nearest pair also between the states beside that one. Rods with a common node,
+/// states of a motion, and between them in so many poses that two cannot pass through each other unseen; of
+/// the nearest pair also between the states beside that one. Rods with a common node,
 /// with ends that stay in one place, or with a pin through both (a node on both) meet there and are left out.
 /// None where no two are left.
 std::optional<Clearance> least_clearance(const Trajectory& trajectory, std::size_t states);

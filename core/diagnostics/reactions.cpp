@@ -43,16 +43,12 @@ std::vector<Place> places_of(const Structure& structure, const Measure& measure)
   return places;
 }
 
-bool tells_place(const Structure& structure, const Measure& measure) {
-  return !places_of(structure, measure).empty();
-}
-
 bool linear(const Constraint& c) {
   return c.kind == "fixed" || c.kind == "plane" || c.kind == "line" || c.kind == "relation";
 }
 
 bool ties_to_ground(const Structure& structure, const Constraint& c) {
-  if (c.kind == "measure") return tells_place(structure, c.measure);
+  if (c.kind == "measure") return !places_of(structure, c.measure).empty();
   return linear(c) && !c.symmetry && c.nodes.size() == 1;
 }
 
@@ -96,17 +92,28 @@ std::vector<char> unique_supports(const Trajectory& trajectory, std::size_t i, b
   // With what keeps a support in the plane of a flat structure: there it gives nothing, but to be chosen.
   const std::vector<int> nodes = supports(trajectory.structure());
   const std::vector<int>& sources = model.system.all_sources();
-  VectorXd of_support = VectorXd::Zero(G.rows());
-  of_support.head(constraints.rows()) = rows_of_supports(model.structure, sources);
-  for (std::size_t r = 0; r < sources.size(); ++r)
-    if (sources[r] >= 0)
-      if (const Constraint& c = model.structure.constraints[static_cast<std::size_t>(sources[r])];
-          c.symmetry && c.nodes.size() == 1 && std::ranges::binary_search(nodes, c.nodes.front()))
-        of_support[static_cast<Index>(r)] = 1.0;
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto tell_places = [&](Index row, const Measure& measure) {
+    for (const Place& place : places_of(model.structure, measure))
+      for (const int axis : {0, 1, 2})
+        entries.emplace_back(static_cast<int>(row), 3 * place.node + axis, place.change[axis]);
+  };
+  for (Index r = 0; r < constraints.rows(); ++r) {
+    const int source = sources[static_cast<std::size_t>(r)];
+    if (source < 0) continue;
+    const Constraint& c = model.structure.constraints[static_cast<std::size_t>(source)];
+    if (c.kind == "measure")
+      tell_places(r, c.measure);
+    else if (ties_to_ground(model.structure, c) ||
+             (c.symmetry && c.nodes.size() == 1 && std::ranges::binary_search(nodes, c.nodes.front())))
+      for (SparseRows::InnerIterator it(constraints, r); it; ++it)
+        entries.emplace_back(static_cast<int>(r), static_cast<int>(it.col()), it.value());
+  }
   Index row = constraints.rows();
-  for (const Measure& measure : resting.measures(rests))
-    of_support[row++] = tells_place(model.structure, measure) ? 1.0 : 0.0;
-  const std::vector<char> sums = determined_sums(G, of_support, compliance);
+  for (const Measure& measure : resting.measures(rests)) tell_places(row++, measure);
+  SparseRows told(G.rows(), G.cols());
+  told.setFromTriplets(entries.begin(), entries.end());
+  const std::vector<char> sums = determined_sums(G, told, compliance);
   std::vector<char> unique;
   for (const int node : nodes)
     unique.push_back(std::all_of(sums.begin() + 3 * node, sums.begin() + 3 * node + 3, std::identity()));

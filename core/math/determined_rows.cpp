@@ -92,9 +92,11 @@ std::vector<char> determined_rows(const SparseRows& G, const VectorXd& complianc
   return vanishing_rows(null_vectors(unit_rows(G), compliance));
 }
 
-std::vector<char> determined_sums(const SparseRows& G, const VectorXd& taken, const VectorXd& compliance) {
-  const SparseRows unit = unit_rows(G);
-  return vanishing_rows(unit.transpose() * (taken.asDiagonal() * null_vectors(unit, compliance)));
+std::vector<char> determined_sums(const SparseRows& G, const SparseRows& told, const VectorXd& compliance) {
+  MatrixXd samples = null_vectors(unit_rows(G), compliance);
+  for (Index r = 0; r < G.rows(); ++r)
+    if (const double norm = G.row(r).norm(); norm > 0) samples.row(r) /= norm;
+  return vanishing_rows(told.transpose() * samples);
 }
 
 }  // namespace unfurl

@@ -24,9 +24,9 @@ namespace unfurl {
 /// themselves.
 std::vector<char> determined_rows(const SparseRows& G, const VectorXd& compliance = {});
 
-/// Which entries of the sum of taken_i y_i (row i of G), over the rows, are determined by the same equations
-/// [one a column of G, 1: yes]: what one choice of y takes from a row it may give to another one.
-std::vector<char> determined_sums(const SparseRows& G, const VectorXd& taken,
+/// Which entries of told^T y, `told` with as many rows as G, are determined by the same equations [one a
+/// column of told, 1: yes]: what one choice of y takes from a row it may give to another one.
+std::vector<char> determined_sums(const SparseRows& G, const SparseRows& told,
                                   const VectorXd& compliance = {});
 
 /// G^T without the entries of round-off, below 1e-11 of their rows of G: solvers scale coordinates to one

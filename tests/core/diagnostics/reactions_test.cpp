@@ -368,4 +368,35 @@ TEST_CASE("over any motion reactions and weight are the change of momentum") {
   }
 }
 
+// An arm of 1 m with 2 kg at its tip B and 1 kg of its own turns a pinion about H, whose teeth move a rack R
+// of 1 kg: 25 N m about H, which a brake at the tip bears by 25 N at 1 m, one at the rack by 125 N at 0.2 m,
+// teeth and the pinion's frame A at 1 m with it. Both brakes: in any proportion.
+TEST_CASE("reactions: what two brakes of one freedom leave open is not unique where a rack is between them") {
+  const auto braked = [](bool tip, bool rack) {
+    const std::string brake = "[[constraints]]\nkind = 'coordinate'\n";
+    return run_scene(custom + node("A", {0, 0, 1}, "fixed = true") + node("H", {0, 0, 0}, "fixed = true") +
+                     node("B", {1, 0, 0}, "mass = 2") + node("R", {0, 0, -0.2}, "mass = 1") +
+                     node("P", {3, 0, 0}, "fixed = true") + node("Q", {3, 0, -1}, "mass = 1") +
+                     rod("H", "B", "mass = 1") + rod("P", "Q", "mass = 1") +
+                     "[[constraints]]\nkind = 'plane'\nnodes = ['B', 'Q']\nnormal = [0, 1, 0]\n"
+                     "[[constraints]]\nkind = 'line'\nnodes = ['R']\ndirection = [1, 0, 0]\n"
+                     "[[constraints]]\nkind = 'rack'\nnodes = ['A', 'H', 'B', 'R']\nradius = 0.2\n"
+                     "direction = [1, 0, 0]\naxis = [0, 1, 0]\n" +
+                     (tip ? brake + "nodes = ['B']\ndirection = [0, 0, 1]\n" : "") +
+                     (rack ? brake + "nodes = ['R']\ndirection = [1, 0, 0]\n" : "") +
+                     "[gravity]\nacceleration = [0, 0, -10]\n[solver]\nend_time = 0.02\n");
+  };
+  const Diagnostics at_tip = diagnose(braked(true, false)), at_rack = diagnose(braked(false, true)),
+                    both = diagnose(braked(true, true));
+  for (const char* name : {"A", "H", "B"}) {
+    INFO(name);
+    CHECK(unique(at_tip, name, 0));
+    if (name != std::string("B")) CHECK(unique(at_rack, name, 0));
+    CHECK_FALSE(unique(both, name, 0));
+  }
+  CHECK(reaction(at_tip, "B", 0).z() == Approx(25).epsilon(1e-9));
+  CHECK(reaction(at_tip, "A", 0).norm() < 1e-9);
+  CHECK(reaction(at_rack, "A", 0).norm() == Approx(25).epsilon(1e-9));
+}
+
 }  // namespace reactions_test

@@ -88,9 +88,12 @@ TEST_CASE("sums over rows are determined where what rows have each is open") {
   SparseRows G(3, 2);
   G.insert(0, 0) = 1, G.insert(1, 0) = 2, G.insert(2, 1) = 5;
   CHECK(determined_rows(G) == std::vector<char>{0, 0, 1});
-  CHECK(determined_sums(G, Eigen::Vector3d(1, 1, 0)) == std::vector<char>{1, 1});
-  CHECK(determined_sums(G, Eigen::Vector3d(1, 0, 1)) == std::vector<char>{0, 1});
-  CHECK(determined_sums(G, Eigen::Vector3d(1, 0, 1), Eigen::Vector3d(1, 0, 0)) == std::vector<char>{1, 1});
+  const auto taken = [&](double a, double b, double c) -> SparseRows {
+    return Eigen::Vector3d(a, b, c).asDiagonal() * G;
+  };
+  CHECK(determined_sums(G, taken(1, 1, 0)) == std::vector<char>{1, 1});
+  CHECK(determined_sums(G, taken(1, 0, 1)) == std::vector<char>{0, 1});
+  CHECK(determined_sums(G, taken(1, 0, 1), Eigen::Vector3d(1, 0, 0)) == std::vector<char>{1, 1});
 }
 
 }  // namespace determined_rows_test
