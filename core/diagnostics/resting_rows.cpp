@@ -17,25 +17,30 @@ RestingRows::RestingRows(const Model& model)
   for (std::size_t i = 0; i < stops_.size(); ++i) held_.push_back(stops_.is_held(i, model.structure));
 }
 
-std::vector<char> RestingRows::at(const State& state, double step) const {
+std::vector<char> RestingRows::at(const State& state, const State* next, double step) const {
   constexpr double still = 1e2, drifted = 1e5;  // of what counts as touching; what methods leave of it
   std::vector<char> rests(frictions_.size() + stops_.size(), 0);
   VectorXd q(model_.system.coordinates()), v(q.size()), gradient;
   model_.system.expand(state.z, q);
   model_.system.expand_rate(state.w, v);
-  for (std::size_t i = 0; i < frictions_.size(); ++i) {
-    const MeasureFunction& s = frictions_[i].function;
-    rests[i] = !frictions_[i].slips;
-    if (rests[i] || !led_) continue;
+  const auto stays = [&](const MeasureFunction& s) {
     gradient.resize(std::ssize(s.stencil()));
     s.value_and_gradient(q.data(), gradient.data());
-    rests[i] = std::abs(s.rate(gradient.data(), v.data())) * step <= still * stops_.touching(s);
-  }
+    return std::abs(s.rate(gradient.data(), v.data())) * step <= still * stops_.touching(s);
+  };
+  for (std::size_t i = 0; i < frictions_.size(); ++i)
+    rests[i] = !frictions_[i].slips || (led_ && stays(frictions_[i].function));
   for (std::size_t i = 0; i < stops_.size(); ++i) {
     double rate = 0;
     const double gap = stops_.gap(i, state, q, v, rate), zero = drifted * stops_.touching(stops_[i].function);
     rests[frictions_.size() + i] = !held_[i] && gap <= zero && std::abs(rate) * step <= zero;
   }
+  if (!next || std::find(rests.begin(), rests.end(), 1) == rests.end()) return rests;
+  // What a drive only sets out from, against friction, holds nothing.
+  model_.system.expand(next->z, q);
+  model_.system.expand_rate(next->w, v);
+  for (std::size_t i = 0; i < frictions_.size(); ++i)
+    if (rests[i] && frictions_[i].slips) rests[i] = stays(frictions_[i].function);
   return rests;
 }
 

@@ -19,8 +19,8 @@ class RestingRows {
   explicit RestingRows(const Model& model);
 
   bool empty() const { return frictions_.empty() && stops_.empty(); }
-  // Each of them, 1: it rests. step: of the method [s].
-  std::vector<char> at(const State& state, double step) const;
+  // Each of them, 1: it rests. next: the state behind it, nullptr: there is none. step: of the method [s].
+  std::vector<char> at(const State& state, const State* next, double step) const;
   // G with a row, its gradient at the node coordinates q, for each that rests, behind its own; its columns
   // are the solver's coordinates or the nodes'.
   SparseRows behind(const SparseRows& G, const ConstVec& q, const std::vector<char>& rests) const;

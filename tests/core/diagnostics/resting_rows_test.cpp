@@ -205,4 +205,30 @@ rods = [{ nodes = ["A", "B"], mass = 1, area = 1e-4, youngs_modulus = 1e10 }]
   CHECK(diagnose(run).axial_force.rows() > 0);
 }
 
+// A spline through 0, 0.1 and 0.3 m at 0, 0.2 and 0.5 s sets out with 6.5 m/s^2: 5 N of friction and half of
+// 2 kg are on the rod from the first state on, 18 N on the drive, and nothing holds.
+TEST_CASE("a drive that sets out against friction has unique forces from the start") {
+  const Simulation run = run_scene(R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0]}, {name = "B", position = [1, 0, 0]}]
+rods = [{nodes = ["A", "B"], mass = 2}]
+constraints = [{kind = "line", nodes = ["A", "B"], direction = [1, 0, 0]},
+  {kind = "coordinate", name = "push", nodes = ["A"], direction = [1, 0, 0], motion = "table", times = [0, 0.2, 0.5], values = [0, 0.1, 0.3]}]
+[[forces]]
+kind = "friction"
+nodes = ["B"]
+direction = [1, 0, 0]
+kinetic = 5
+[solver]
+end_time = 0.1
+)");
+  const Diagnostics d = diagnose(run);
+  CHECK(d.axial_force(0, 0) == Approx(-11.5).epsilon(1e-9));
+  CHECK(d.at("push.force_N").values.front() == Approx(18).epsilon(1e-9));
+  for (const char* name : {"push.force_unique", "axial_force_min_unique", "A.reaction_unique"}) {
+    INFO(name);
+    for (const double unique : d.at(name).values) CHECK(unique == 1.0);
+  }
+}
+
 }  // namespace resting_rows_test
