@@ -23,8 +23,6 @@
 namespace unfurl {
 namespace {
 
-// As the time loop has it: impacts that follow each other within this share of a step have accumulated.
-constexpr double accumulated = 1e-4;
 constexpr long most_switches = 100;  // at one time
 // Two solutions of one equation, next to a pose where it is nearly singular.
 constexpr double same_equations = 1e-7, rounded_sum = 1e-12;
@@ -318,8 +316,7 @@ class PathRun {
     if (approach < 0) return;
     if (motion_.v() != 0)
       refuse_other_ways(sides_, i, model().system, state_at(motion_.t(), motion_.s(), motion_.v()));
-    const bool series = stop.restitution < 1 && flight > 0 && flight <= accumulated * options_.step;
-    if (series || stop.restitution * approach <= stop.rest_speed) return stop_at(i, slope);
+    if (sides_.impact_rests(i, approach, flight)) return stop_at(i, slope);
     const double e = stop.restitution, taken = 0.5 * (1 - e * e) * motion_.v() * motion_.v();
     add_event(impact(stop), taken);
     motion_.set_speed(-e * motion_.v());

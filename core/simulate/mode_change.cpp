@@ -9,6 +9,7 @@
 
 #include "core/math/box_complementarity.hpp"
 #include "core/math/factors.hpp"
+#include "core/simulate/impact.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/push_responses.hpp"
 
@@ -16,11 +17,7 @@ namespace unfurl {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double rounding = 1e-8;        // of the largest push
-constexpr double rate_rounding = 1e-14;  // of the largest rate
-// Of all rates before an impact: it stops everything, and what acts, not what rounding leaves of the motion,
-// tells whether the stop is left.
-constexpr double all_stopped = 1e-13;
+constexpr double rounding = 1e-8;  // of the largest push
 // Of an acceleration, of all that it is the sum of; of one that no push changes, of what cancels where it
 // does not: it is told by no more than PushResponses::movable() tells.
 constexpr double sum_rounding = 1e-12, immovable_rounding = 1e-6;
@@ -160,49 +157,16 @@ class Change {
     return D_(r, r) * sides_.holding(i) * sides_.touching(i) / sides_.zero_rate(i);
   }
 
-  // The stops that are approached, all at once. False where there is no answer.
+  // The stops that are approached. False where there is no answer.
   bool strike(const PushResponses& responses, const std::function<bool(std::size_t, double)>& rests) {
-    VectorXd u = responses.rates(out_.state.w), b = u, low = VectorXd::Zero(count()), high = low, hit = low;
-    for (Index r = 0; r < count(); ++r) {
-      const std::size_t i = side(r);
-      if (!sides_.is_stop(i)) continue;
-      high[r] = movable(r) ? infinity : 0.0;
-      const bool new_here = crossed(r) && !sides_.active(i);
-      if (!(u[r] < (new_here ? -sides_.rounded_rate(i) : -sides_.zero_rate(i)))) continue;
-      if (!movable(r)) {
-        // No impulse moves it. What others hold needs no hold of its own.
-        if (-u[r] <= std::max(sides_.stops()[i].rest_speed, 1e-9 * sides_.fastest(i, out_.state))) continue;
-        return fail_at(r);
-      }
-      struck_[static_cast<std::size_t>(r)] = true;
-      hit[r] = 1.0;
-      if (!sides_.active(i) && !rests(i, -u[r])) b[r] += sides_.stops()[i].restitution * u[r];
-    }
-    if (hit.isZero(0)) return true;
-    // Two stops on either side of what hardly moves: whether it leaves the one as fast as it meets the other
-    // is known as well as its rates are.
-    VectorXd of_rates(count());
-    for (Index r = 0; r < count(); ++r) of_rates[r] = rate_rounding * sides_.fastest(side(r), out_.state);
-    auto impulses = solve_box(D_, b, low, high, of_rates);
-    if (!impulses) {               // they throw it at each other
-      std::vector<Index> pushing;  // friction gives no impulses, and passes none on
-      for (Index r = 0; r < count(); ++r)
-        if (high[r] > 0) pushing.push_back(r);
-      for (std::vector<Index>& rows : joined_rows(D_(pushing, pushing))) {
-        for (Index& r : rows) r = pushing[static_cast<std::size_t>(r)];
-        if (!solve_box(D_(rows, rows), b(rows), low(rows), high(rows), of_rates(rows))) b(rows) = u(rows);
-      }
-      impulses = solve_box(D_, b, low, high, of_rates);
-    }
-    if (!impulses) return fail_at(std::find(struck_.begin(), struck_.end(), true) - struck_.begin());
-    const double fastest = out_.state.w.lpNorm<Eigen::Infinity>();
-    responses.give(impulses->x, out_.state.w);
-    if (out_.state.w.lpNorm<Eigen::Infinity>() <= all_stopped * fastest) out_.state.w.setZero();
-    // What is pushed unstruck, as a stop that is being left, gives or takes, too: a share of each impact.
-    const VectorXd lost = -0.5 * impulses->x.cwiseProduct(u + responses.rates(out_.state.w));
-    const double of_struck = lost.dot(hit), share = of_struck > 0 ? lost.sum() / of_struck : 1.0;
+    std::vector<bool> crossed_rows(rows_.size());
+    for (Index r = 0; r < count(); ++r) crossed_rows[static_cast<std::size_t>(r)] = crossed(r);
+    Impacts impact = strike_stops(sides_, rows_, crossed_rows, responses, D_, rests, out_.state);
+    if (impact.pushed_against >= 0) return fail_at(impact.pushed_against);
+    struck_ = std::move(impact.struck);
     for (Index r = 0; r < count(); ++r)
-      if (hit[r] > 0) out_.impacts.push_back({side(r), share * lost[r], sides_.active(side(r))});
+      if (struck_[static_cast<std::size_t>(r)])
+        out_.impacts.push_back({side(r), impact.lost[r], sides_.active(side(r))});
     return true;
   }
 

@@ -103,6 +103,9 @@ class OneSided {
   // or angle, in a step. Of accelerations nothing does but what rounding leaves of what they are the sum of.
   double touching(std::size_t i) const { return stops_.touching(measure(i)); }
   double zero_rate(std::size_t i) const { return touching(i) / step_; }
+  // Does an impact on a stop end in rest, after such a flight since the last one? So do slow ones, and those
+  // of a series that has accumulated.
+  bool impact_rests(std::size_t i, double approach, double flight) const;
   // Of rates at which nothing holds: what rounding the length leaves in a step.
   double rounded_rate(std::size_t i) const { return rounded_share * zero_rate(i); }
   // As fast as the fastest coordinate is [m/s], or as that turns [rad/s].

@@ -33,9 +33,6 @@ namespace stepping {
 // A state whose sin(fold) is below this has lost digits to the singular deployed pose and counts as having
 // reached it.
 inline constexpr double singular_margin = 1e-4, deployed_already = 1e-12;
-// Impacts of one stop that follow each other within this share of a step have accumulated: the stop holds.
-// With restitution e the rest of their series takes e / (1 - e) times as long.
-inline constexpr double accumulated = 1e-4;
 // Where more than this many switches, and twice as many for each stop and cable, come at one time, no order
 // of them leads on: what touches is held. Where that is of no use either, the rest of the step is taken as it
 // is.
@@ -351,11 +348,7 @@ class Stepper::Loop {
                          const VectorXd& left = {}, double later = 0.0) {
     sides_.weigh(model(), now());
     const auto rests = [&](std::size_t i, double approach) {
-      const StopSide& stop = sides_.stops()[i];
-      const double flight = state.t - std::exchange(last_touch_[i], state.t);
-      const bool series =
-          stop.restitution < 1 && flight > 0 && flight <= stepping::accumulated * run_.options.step;
-      return series || stop.restitution * approach <= stop.rest_speed;
+      return sides_.impact_rests(i, approach, state.t - std::exchange(last_touch_[i], state.t));
     };
     return change_modes(sides_, *base_, state, which, rests, left, later);
   }

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Blows that follow one another at one time: a body between a wall and another one.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "tests/support/number.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace impact_test {
+
+using testing::number;
+using testing::run_scene;
+
+namespace {
+
+struct Body {
+  double mass, velocity;
+};
+
+// Bodies in a row along x, half a metre apart and free to go apart, the first of them on a wall or by `gap`
+// off it and each as much farther from the one before.
+std::string row(const std::vector<Body>& bodies, double gap, double restitution, double end) {
+  std::string nodes, names, stops;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const std::string name = "P" + std::to_string(k), comma = k > 0 ? ", " : "";
+    nodes += comma + "{name = \"" + name + "\", position = [" +
+             number(1 + 0.5 * static_cast<double>(k) + gap * static_cast<double>(k + 1)) +
+             ", 0, 0], mass = " + number(bodies[k].mass) + ", velocity = [" + number(bodies[k].velocity) +
+             ", 0, 0]}";
+    names += comma + "\"" + name + "\"";
+    stops += "[[constraints]]\n";
+    stops += k == 0 ? "kind = \"coordinate_stop\"\nnodes = [\"P0\"]\ndirection = [1, 0, 0]\nmin = 1\n"
+                    : "kind = \"length_stop\"\nnodes = [\"P" + std::to_string(k - 1) + "\", \"" + name +
+                          "\"]\nmin = 0.5\n";
+    stops += "restitution = " + number(restitution) + "\n";
+  }
+  return "[structure]\nkind = \"custom\"\nnodes = [" + nodes +
+         "]\n[[structure.constraints]]\nkind = \"line\"\nnodes = [" + names + "]\ndirection = [1, 0, 0]\n" +
+         stops + "[solver]\nstep = 0.01\nend_time = " + number(end) + "\n";
+}
+
+double kinetic(const Diagnostics& d) {
+  return d.at("kinetic_energy_J").values.back();
+}
+double speed(const Simulation& run, Index body) {
+  return run.trajectory.node_velocities(run.trajectory.size() - 1)[3 * body];
+}
+
+// Of two or three bodies whose gaps are too small to be anything: what is approached strikes, whichever
+// first, until nothing is.
+std::vector<double> one_after_the_other(std::vector<Body> bodies, double e) {
+  for (bool struck = true; struck;) {
+    struck = false;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      Body& b = bodies[k];
+      const double closing = (k > 0 ? bodies[k - 1].velocity : 0.0) - b.velocity;
+      if (!(closing > 0)) continue;
+      struck = true;
+      const double against = k > 0 ? bodies[k - 1].mass : HUGE_VAL;
+      const double reduced = std::isinf(against) ? b.mass : b.mass * against / (b.mass + against);
+      const double impulse = (1 + e) * closing * reduced;
+      b.velocity += impulse / b.mass;
+      if (k > 0) bodies[k - 1].velocity -= impulse / against;
+    }
+  }
+  std::vector<double> out;
+  for (const Body& b : bodies) out.push_back(b.velocity);
+  return out;
+}
+
+}  // namespace
+
+// It leaves the wall at 1 m/s while another comes at 2: thrown back, to the wall, and on behind the other.
+TEST_CASE("what is being left is struck by the next blow, not pushed along") {
+  for (const double e : {1.0, 0.8, 0.5, 0.3}) {
+    INFO(e);
+    const std::vector<Body> bodies{{1, 1}, {1, -2}};
+    const std::vector<double> wanted = one_after_the_other(bodies, e);
+    const Simulation run = run_scene(row(bodies, 0, e, 0.1));
+    REQUIRE(run.status == RunStatus::completed);
+    for (const Index k : {0, 1})
+      CHECK(speed(run, k) == Approx(wanted[static_cast<std::size_t>(k)]).epsilon(1e-12));
+    const Diagnostics d = diagnose(run);
+    double told = 0;
+    for (const Event& event : run.events) told += event.energy_lost;
+    CHECK(told == Approx(2.5 - kinetic(d)).margin(1e-12));
+    CHECK(d.at("impact_loss_J").values.back() == Approx(2.5 - kinetic(d)).margin(1e-12));
+  }
+}
+
+// 10 g between a wall and 10 kg that come at 1 m/s: at a restitution of 0.9 the light one cannot give back
+// what it takes, and both end at the wall, whatever the gaps were, which nothing has a length to compare
+// with.
+TEST_CASE("a light body between a wall and a heavy one stops it, in whatever gap") {
+  for (const double gap : {0.0, 1e-9, 1e-7, 1e-5, 1e-3, 0.1}) {
+    INFO(gap);
+    const Simulation run = run_scene(row({{0.01, -3}, {10, -1}}, gap, 0.9, 0.5));
+    REQUIRE(run.status == RunStatus::completed);
+    CHECK(kinetic(diagnose(run)) < 1e-9);
+  }
+}
+
+// Gaps of zero, velocities, masses and restitutions at random: no impact gives energy, what bodies are left
+// with approaches nothing, and where two bodies are struck one after the other they move as one blow after
+// the other has it.
+TEST_CASE("impacts of bodies in a row give no energy") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int trial = 0; trial < 60; ++trial) {
+    const std::size_t count = 2 + static_cast<std::size_t>(trial % 3);
+    std::vector<Body> bodies;
+    double before = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      bodies.push_back({std::pow(10.0, any(random)), 3 * any(random)});
+      before += 0.5 * bodies[k].mass * bodies[k].velocity * bodies[k].velocity;
+    }
+    const double e = 0.6 + 0.4 * any(random);
+    INFO("trial " << trial << ", e = " << e);
+    const Simulation run = run_scene(row(bodies, 0, e, 0.02));
+    REQUIRE(run.status == RunStatus::completed);
+    const Diagnostics d = diagnose(run);
+    CHECK(kinetic(d) <= before * (1 + 1e-12));
+    CHECK(d.at("impact_loss_J").values.back() == Approx(before - kinetic(d)).margin(1e-12 * before));
+    double last = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      CHECK(speed(run, static_cast<Index>(k)) >= last - 1e-6);
+      last = speed(run, static_cast<Index>(k));
+    }
+  }
+}
+
+}  // namespace impact_test
