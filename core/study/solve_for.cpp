@@ -44,7 +44,6 @@ class Search {
   }
   double off(const Evaluation& e) const { return std::abs(e.value - target_); }
   double now() const { return o_.clock ? o_.clock() : thread_cpu_seconds(); }
-  bool took_too_long() const { return took_ > o_.patience_s && took_ > o_.patience_of_first * first_took_; }
   bool valid(const Evaluation& e) const { return !std::isnan(e.value); }
   bool exact(const Evaluation& e) const { return e.value == target_; }
   bool opposite(const Evaluation& a, const Evaluation& b) const {
@@ -80,9 +79,12 @@ class Search {
     a_ = b_ = start;
     if (exact(start)) return;
     const double first = o_.start != 0 ? 0.02 * std::abs(o_.start) : 0.02;
-    Side up{start, first}, down{start, -first};
-    while (up.open || down.open)
+    Side up{start, start, start, first}, down{start, start, start, -first};
+    for (bool looked = false; up.open || down.open;) {
       if (advance(up) || advance(down)) return;
+      const bool both = up.first.x != start.x && down.first.x != start.x;
+      if (both && !std::exchange(looked, true) && in_dip(down.first, start, up.first)) return;
+    }
     give_up("the target is not reached on either side of " + short_number(o_.start, 9) +
             (too_long_.empty()
                  ? ""
@@ -90,8 +92,8 @@ class Search {
   }
 
   struct Side {
-    Evaluation last;
-    double stride;
+    Evaluation first, before, last;  // of the start, too, until there are more
+    double stride, took = 0;
     bool open = true, walled = false;
   };
 
@@ -99,7 +101,8 @@ class Search {
     if (!side.open) return false;
     const Evaluation next = at(side.last.x + side.stride);
     const bool met = exact(next) || opposite(side.last, next);  // of a plateau from above, too
-    if (took_too_long() && !met) {
+    side.took += took_;
+    if (side.took > o_.patience_s && took_ > o_.patience_of_first * first_took_ && !met) {
       too_long_ = short_number(next.x, 9);
       side.open = false;
       return false;
@@ -114,10 +117,44 @@ class Search {
       a_ = side.last, b_ = next;
       return true;
     }
-    side.last = next;
+    if (side.before.x != side.last.x && in_dip(side.before, side.last, next)) return true;
+    if (side.before.x == side.last.x) side.first = next;
+    side.before = std::exchange(side.last, next);
     side.stride *= side.walled ? 0.5 : 2;
     const double far = std::abs(side.last.x - o_.start), unit = std::max(std::abs(o_.start), 1.0);
     side.open = std::abs(side.stride) > 1e-9 * std::max(std::abs(side.last.x), 1e-3) && far < 1e9 * unit;
+    return false;
+  }
+
+  // Values of one side of the target of which that in the middle is nearest: others between them may lie on
+  // the other side. A golden section, until what is left of the dip could not reach there: it falls by its
+  // height once more at most where its parts are equal and it is convex, here by twice that.
+  bool in_dip(Evaluation before, Evaluation middle, Evaluation behind) {
+    constexpr int most_looks = 40;
+    const double nothing = 0;  // where many measures have their least
+    for (int look = 0; look < most_looks; ++look) {
+      const double height = std::max(off(before), off(behind)) - off(middle);
+      const double left = middle.x - before.x, right = behind.x - middle.x;
+      const double ratio = std::max(left / right, right / left);
+      if (off(before) < off(middle) || off(behind) < off(middle) || !(off(middle) < 2 * ratio * height))
+        return false;
+      constexpr double golden = 0.3819660112501051;
+      double x = middle.x + golden * (std::abs(left) < std::abs(right) ? right : -left);
+      if (look == 0 && (before.x < nothing) != (behind.x < nothing) && middle.x != nothing) x = nothing;
+      const bool is_behind = (x - middle.x) * right > 0;
+      if (x == middle.x || x == before.x || x == behind.x) return false;
+      const Evaluation e = at(x);
+      if (!valid(e)) return false;
+      if (exact(e) || opposite(middle, e)) {
+        a_ = is_behind ? middle : before;
+        b_ = e;
+        return true;
+      }
+      if (off(e) < off(middle))
+        (is_behind ? before : behind) = std::exchange(middle, e);
+      else
+        (is_behind ? behind : before) = e;
+    }
     return false;
   }
 

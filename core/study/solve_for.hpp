@@ -18,9 +18,9 @@ struct SolveOptions {
   double low = 0, high = 0;    // --between; equal: not given, the search looks around `start`
   double x_tolerance = 1e-12;  // relative
   int most = 200;              // evaluations
-  // Looking around, a side is given up where one evaluation takes longer than both: towards a step of zero
-  // runs grow without end.
-  double patience_s = 20, patience_of_first = 30;  // [s], times the first one
+  // Looking around, a side is given up where its evaluations took so long and the last one so many times the
+  // first: towards a step of zero runs grow without end.
+  double patience_s = 10, patience_of_first = 30;  // [s], times
   std::function<double()> clock = nullptr;         // [s]; by default the CPU time of this thread
 };
 
@@ -40,8 +40,9 @@ struct NotFound : Error {
 };
 
 // A root of f - target by bracketing: from `start` outwards, steps doubled, halved again where x becomes
-// invalid, until the sign changes; then regula falsi with bisection as safeguard (ITP-like: never slower than
-// bisection by more than a factor of two). Throws NotFound, Cancelled.
+// invalid, until the sign changes, with a closer look where values come nearer and go again; then regula
+// falsi with bisection as safeguard (ITP-like: never slower than bisection by more than a factor of two).
+// Throws NotFound, Cancelled.
 Solved solve_for(const Objective& f, double target, const SolveOptions& options, const StudyHooks& hooks);
 
 }  // namespace unfurl

@@ -101,8 +101,9 @@ TEST_CASE("a search gives a side up where runs take longer and longer") {
     return 4.92;
   };
   CHECK_THROWS_WITH(solve_for(f, 5, options, {}), Catch::Contains("a run takes too long to look further"));
-  // Each run may take up to twice as long as the one before: in sum twice the last, which may be twice 30 s.
-  CHECK(time < 200);
+  // 30 times the first one's second is too long; each run takes twice as long as the one before, so that the
+  // last takes 60 s at most and all of them twice that. The other side costs nothing, as x grows there.
+  CHECK(time < 120);
   time = 0;
   const auto reached = [&](double x) { return f(x) + (x < 1e-3 ? 1 : 0); };  // before that
   CHECK(solve_for(reached, 5.92, options, {}).value == 5.92);
@@ -141,6 +142,37 @@ TEST_CASE("a target out of reach is told with what was reached") {
       solve_for([](double x) { return x; }, 9, {.start = 1, .most = 3}, {}),
       Catch::Contains("no answer after 3 runs; for parameters from 0.98 to 1.02 the measure runs "
                       "from 0.98 to 1.02"));
+}
+
+// The largest force of a drive of x newtons, of either sign: targets below the start's value lie on both
+// sides of where it is least, closer together than strides are there.
+TEST_CASE("a target that two strides of one sign step over is found where values turn back between them") {
+  std::mt19937 dice(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int trial = 0; trial < 600; ++trial) {
+    const double least = trial % 3 == 0 ? 0 : 5 * any(dice), power = trial % 2 == 0 ? 1 : 2;
+    const double sign = trial % 4 < 2 ? 1 : -1, lean = 1.5 * any(dice);
+    const auto f = [&](double x) {  // of two slopes beside its least
+      return sign * (3 + (x < least ? 2 + lean : 2.0) * std::pow(std::abs(x - least), power));
+    };
+    const double depth = std::pow(10.0, -4 * std::abs(any(dice))), start = least + 40 * any(dice);
+    CAPTURE(trial, least, power, sign, lean, depth, start);
+    const Solved s = solve_for(f, sign * (3 + depth), {.start = start}, {});
+    CHECK(s.value == Approx(sign * (3 + depth)).epsilon(1e-11));
+    CHECK((f(s.low) - s.value) * (f(s.high) - s.value) <= 0);
+    CHECK(s.evaluations.size() < 120);
+    // Nowhere by as much: looks are few, as they see that the dip does not reach so far.
+    int runs = 0;
+    const auto counted = [&](double x) { return ++runs, f(x); };
+    CHECK_THROWS_WITH(solve_for(counted, sign * (3 - depth), {.start = start}, {}),
+                      Catch::StartsWith("the target is not reached on either side of"));
+    CHECK(runs < 150);
+  }
+  // One that jitters has dips everywhere; none is worth a look: 2 log2(1e9 / 0.02) strides.
+  int runs = 0;
+  const auto jitter = [&](double x) { return ++runs, 4.92 + 1e-15 * std::sin(1e17 * x); };
+  CHECK_THROWS_AS(solve_for(jitter, 5, {.start = 1}, {}), NotFound);
+  CHECK(runs <= 74);
 }
 
 TEST_CASE("a jump over the target is no root") {
