@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <optional>
 
 #include "core/forces/latch_spring.hpp"
 #include "core/integrators/index1.hpp"
@@ -23,6 +23,22 @@ double constraint_error(const System& system, const State& state) {
   system.expand(state.z, q);
   system.constraint(state.t, q, phi);
   return phi.cwiseQuotient(system.constraint_lengths()).lpNorm<Eigen::Infinity>();
+}
+
+// All that waits for the deployed pose, as one: several entries hold each place side by side, and what it
+// bears is what they bear together.
+std::optional<Force> waiting_spring(const Structure& structure) {
+  std::optional<Force> sum;
+  for (const Force& force : structure.forces) {
+    if (!latch_waits(force)) continue;
+    if (sum) {
+      sum->stiffness += force.stiffness;
+      sum->damping += force.damping;
+    } else {
+      sum = force;
+    }
+  }
+  return sum;
 }
 
 // An impulse changes no length: rods that give pull as before it, where lengths do not tell their forces.
@@ -65,13 +81,14 @@ bool latch_gives(const Structure& structure) {
 std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_linear) {
   Structure structure = model.structure;
   const Deployment& deployment = structure.deployment;
+  std::optional<Force> spring = waiting_spring(structure);  // what gives in its place
   if (deployment.measured && deployment.latches.empty()) {
-    const bool gives = latch_gives(structure);
-    for (Force& force : structure.forces) {
-      if (!latch_waits(force)) continue;
-      force.measure = deployment.measure;
-      force.rest = deployment.deployed;
-      force.slack = false;
+    const bool gives = spring.has_value();
+    if (gives) {
+      spring->measure = deployment.measure;
+      spring->rest = deployment.deployed;
+      spring->slack = false;
+      *std::ranges::find_if(structure.forces, latch_waits) = *std::move(spring);
     }
     TimeFunction held;
     held.offset = deployment.deployed;
@@ -83,21 +100,19 @@ std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_li
   }
   std::vector<LinearForm> latches = deployment.latches;
   if (latches.empty()) latches.push_back(remaining_form(deployment));
-  std::vector<Force> springs;  // what gives in their place
-  std::copy_if(structure.forces.begin(), structure.forces.end(), std::back_inserter(springs), latch_waits);
   for (const LinearForm& form : latches) {
     const std::string name =
         deployment.latches.empty()
             ? "latch of the fold angle"
             : "latch of " + structure.nodes[static_cast<std::size_t>(form.nodes[0])].name;
-    for (Force spring : springs) {
-      spring.form = form;
-      spring.name = name;
-      structure.forces.push_back(std::move(spring));
-    }
-    if (springs.empty())
+    if (spring) {
+      spring->form = form;
+      spring->name = name;
+      structure.forces.push_back(*spring);
+    } else {
       structure.constraints.push_back(
           {"relation", name, form.nodes, form.coefficients, -form.offset, {}, {}});
+    }
   }
   System system(structure, eliminate_linear);
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});

@@ -125,7 +125,9 @@ constexpr double inertia = (rod_mass / 3 + tip) * arm * arm;
 
 // A rod on a pivot that turns into line with the x axis, free of loads, and is latched there by a spring. EA:
 // the rod gives, and starts stretched as its turning keeps it, without a wave; 0: it is rigid.
-Simulation turned_in(double k, double c, double end_time, double EA = 0) {
+// shares: of k and c, each an entry.
+Simulation turned_in(double k, double c, double end_time, double EA = 0,
+                     const std::vector<double>& shares = {1}) {
   CustomSpec spec;
   const double fold = 0.4;
   const Vec3 at = arm * Vec3(std::cos(fold), 0, std::sin(fold)),
@@ -144,11 +146,13 @@ Simulation turned_in(double k, double c, double end_time, double EA = 0) {
   structure.deployment.fold_sine = {{1}, {Vec3(0, 0, 1 / arm)}, 0.0};
   structure.deployment.fold_cosine = {{1}, {Vec3(1 / arm, 0, 0)}, 0.0};
   structure.deployment.initial_fold_angle = fold;
-  Force latch;
-  latch.kind = "latch";
-  latch.stiffness = k;
-  latch.damping = c;
-  structure.forces.push_back(latch);
+  for (const double share : shares) {
+    Force latch;
+    latch.kind = "latch";
+    latch.stiffness = share * k;
+    latch.damping = share * c;
+    structure.forces.push_back(latch);
+  }
   SolverOptions options = dvm_options(4, 0.01, end_time);
   options.at_deployed = "latch";
   return simulate(make_model(structure), options);
@@ -236,6 +240,41 @@ TEST_CASE(
   const Diagnostics d = diagnose(run);
   CHECK(d.at("dissipated_J").values.back() == Approx(0.5 * inertia * rate * rate).epsilon(1e-6));
   CHECK(d.at("latch_torque_max_N_m").values.back() < 1e-6);
+}
+
+// Side by side they move as one of their sum does, and the joint bears their sum. Shares add up to the last
+// bit.
+TEST_CASE("several latches that give bear together what one of their sum bears") {
+  const Simulation one = turned_in(40.0, 0.8, 2.0), three = turned_in(40.0, 0.8, 2.0, 0, {0.25, 0.25, 0.5});
+  REQUIRE(one.status == RunStatus::completed);
+  CHECK(largest_of_column(three, diagnose(three), "latch_torque_max_N_m") ==
+        Approx(largest_of_column(one, diagnose(one), "latch_torque_max_N_m")).epsilon(1e-12));
+  const std::string measured = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true},
+         {name = "B", position = [1, 0, 0], velocity = [1.3, 0, 0], mass = 2}]
+rods = []
+constraints = [{kind = "line", nodes = ["B"], direction = [1, 0, 0]}]
+[deployment]
+measure = "length A B"
+deployed = 1.2
+[solver]
+at_deployed = "latch"
+step = 0.01
+stages = 4
+end_time = 2
+[[forces]]
+kind = "latch"
+stiffness = 30
+[[forces]]
+kind = "latch"
+stiffness = 20
+)";
+  const Simulation run = run_scene(measured);
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(largest_of_column(run, diagnose(run), "latch_force_max_N") ==  // v sqrt(m k)
+        Approx(1.3 * std::sqrt(2 * 50.0)).epsilon(1e-8));
 }
 
 // The rod gives by N / EA, N up to 2 N as it turns and 0 as it stands still: so do l, the torque and the
