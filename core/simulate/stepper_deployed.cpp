@@ -93,6 +93,13 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
   }
   if (!event && !to.report.ok() && may_cross(stepping::near_deployed * h))
     event = locate(h, now().t + 2 * stepping::near_deployed * h);
+  // No step that ends so near the pose can be solved: the run's end lies on the way there.
+  if (event && event->t > grid_.end()) {
+    to.state = on_cubic(now(), *event, grid_.end());
+    project(system(), to.state);
+    to.report = {};
+    return event.reset(), true;
+  }
   if (event || !to.report.ok() || deployment_.empty() || deployed_) return true;
   // What a drive leads may come to rest in the deployed pose: near is not there.
   if (margin_ > stepping::deployed_already && crosses(to.state) && !system().drives().empty() &&
