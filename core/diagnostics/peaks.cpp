@@ -14,6 +14,7 @@
 #include "core/diagnostics/peak_by_states.hpp"
 #include "core/diagnostics/peak_samples.hpp"
 #include "core/diagnostics/quintic.hpp"
+#include "core/diagnostics/reactions.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/dense_output.hpp"
@@ -395,7 +396,8 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
     return out;
   };
   const std::vector<double> at_states = signed_values(*column);
-  PeakInMotion top = top_of_motion(run, at_states, of_the_state(*column) ? values : StateValues());
+  const auto dips = sign < 0 ? reaction_dips(d, name) : std::vector<std::size_t>();
+  PeakInMotion top = top_of_motion(run, at_states, of_the_state(*column) ? values : StateValues(), dips);
   if (is_force(*column) && at_states.size() == run.trajectory.size())
     if (const PeakInMotion rise = without_bound(run, at_states, values); !std::isnan(rise.value)) {
       if (!(rise.value <= top.value)) top = rise;
@@ -408,7 +410,7 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
 }  // namespace
 
 PeakInMotion top_of_motion(const Simulation& run, const std::vector<double>& at_states,
-                           const StateValues& values) {
+                           const StateValues& values, const std::vector<std::size_t>& also) {
   const bool of_run = at_states.size() == run.trajectory.size();
   PeakInMotion best;
   for (std::size_t i = 0; i < at_states.size(); ++i)
@@ -416,8 +418,9 @@ PeakInMotion top_of_motion(const Simulation& run, const std::vector<double>& at_
       best = {x, of_run ? run.trajectory.time(i) : best.t};
   if (std::isnan(best.value) || !values || !of_run) return best;
   std::vector<std::size_t> around_these = candidates(run.trajectory, at_states, best.value);
-  for (const std::size_t i : long_steps(run, values))
-    if (std::ranges::find(around_these, i) == around_these.end()) around_these.push_back(i);
+  for (const auto& more : {long_steps(run, values), also})
+    for (const std::size_t i : more)
+      if (std::ranges::find(around_these, i) == around_these.end()) around_these.push_back(i);
   for (const std::size_t i : around_these) {
     const Neighbourhood around(run, i);
     if (around.empty()) continue;

@@ -30,9 +30,10 @@ struct PeakInMotion {
 // none. Around the largest of them and others that may top it `values` is asked at a few times within the
 // steps, closer and closer: of the quintic through positions, velocities and accelerations, or of the run's
 // dense output where that is not good enough. Steps from a singular pose, or in which the motion changes too
-// fast for these, have only their ends. NaN where all values are.
+// fast for these, have only their ends. `also`: states around which is looked, whatever their values are. NaN
+// where all values are.
 PeakInMotion top_of_motion(const Simulation& run, const std::vector<double>& at_states,
-                           const StateValues& values);
+                           const StateValues& values, const std::vector<std::size_t>& also = {});
 double largest_in_motion(const Simulation& run, const std::vector<double>& at_states,
                          const StateValues& values);
 

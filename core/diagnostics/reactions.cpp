@@ -246,6 +246,28 @@ void mark_reactions(const Trajectory& trajectory, const ForceUniqueness& uniquen
   }
 }
 
+std::vector<std::size_t> reaction_dips(const Diagnostics& d, std::string_view column) {
+  constexpr std::size_t most = 3;
+  constexpr std::string_view size = ".reaction_N";
+  if (!column.ends_with(size) || !d.find(column)) return {};
+  const std::string name(column.substr(0, column.size() - size.size()));
+  const auto at = [&](std::size_t i) {
+    Vec3 force;
+    for (int k = 0; k < 3; ++k) force[k] = d.at(name + ".reaction_" + "xyz"[k] + "_N").values[i];
+    return force;
+  };
+  std::vector<std::pair<double, std::size_t>> found;
+  for (std::size_t i = 0; i + 1 < d.t.size(); ++i) {
+    const Vec3 a = at(i), change = at(i + 1) - a;
+    const double u = -a.dot(change) / change.squaredNorm();
+    if (u > 0 && u < 1) found.push_back({(a + u * change).norm(), i});
+  }
+  std::ranges::stable_sort(found, std::less(), [](const auto& f) { return f.first; });
+  std::vector<std::size_t> steps;
+  for (std::size_t k = 0; k < std::min(found.size(), most); ++k) steps.push_back(found[k].second);
+  return steps;
+}
+
 std::vector<PeakReaction> peak_reactions(const Structure& structure, const Diagnostics& d) {
   std::vector<PeakReaction> peaks;
   for (const int node : supports(structure)) {

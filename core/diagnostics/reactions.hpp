@@ -15,6 +15,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
@@ -59,6 +60,10 @@ std::vector<int> supports(const Structure& structure);
 // 1: none is at state i (followed_forces()).
 void mark_reactions(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
                     const std::vector<char>& waves, Diagnostics& diagnostics);
+
+// Of a column NAME.reaction_N, which has a corner where a reaction passes nothing: the first states of steps
+// over which the straight line from one to the next does so most nearly. None of other columns.
+std::vector<std::size_t> reaction_dips(const Diagnostics& diagnostics, std::string_view column);
 
 // The largest magnitude of a support's reaction over the states.
 struct PeakReaction {
