@@ -116,7 +116,7 @@ MotorState asked_state(const Force& motor, const MeasureFunction& measure, int f
                        const double* q, const double* v, double* gradient) {
   const Motor& m = motor.motor;
   MotorState s;
-  s.value = measure.value_and_gradient(q, gradient, at, followed);
+  s.value = measure.value_and_gradient(q, v, gradient, at, followed);
   s.rate = measure.rate(gradient, v);
   if (m.control == Motor::Control::none)
     at_voltage(m, m.command(at.t), s);

@@ -48,7 +48,7 @@ class Springs final : public ForceBlock {
     straight_.add(q, v, scale, f);
     Gradient g(size_);
     for (const Spring& spring : springs_) {
-      const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
+      const double s = spring.measure.value_and_gradient(q, v, g.data(), at, spring.followed);
       const SpringLaw law = spring_law(spring.law, at.t, q);
       const double rate = spring.law.damping > 0 ? spring.measure.rate(g.data(), v) - law.rest_rate : 0.0;
       if (law.drum >= 0) f[law.drum] -= scale * law.by_drum * pull_of(spring.law, s - law.rest).energy;
@@ -80,7 +80,7 @@ class Springs final : public ForceBlock {
     double sum = straight_.dissipation(q, v);
     for (const Spring& spring : springs_) {
       if (!(spring.law.damping > 0) && !spring.pulleys) continue;
-      const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
+      const double s = spring.measure.value_and_gradient(q, v, g.data(), at, spring.followed);
       const SpringLaw law = spring_law(spring.law, at.t, q);
       const double rate = spring.measure.rate(g.data(), v), stretching = rate - law.rest_rate;
       const double n = spring_pull(spring.law, law, s, stretching).tension;
@@ -100,7 +100,7 @@ class Springs final : public ForceBlock {
     for (const Spring& spring : springs_) {
       const auto& stencil = spring.measure.stencil();
       g.resize(static_cast<Index>(stencil.size()));
-      const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
+      const double s = spring.measure.value_and_gradient(q, v, g.data(), at, spring.followed);
       const SpringLaw law = spring_law(spring.law, at.t, q);
       const double rate = spring.measure.rate(g.data(), v) - law.rest_rate;
       const double n = spring_pull(spring.law, law, s, rate).tension;
@@ -140,7 +140,7 @@ class Springs final : public ForceBlock {
     for (const Spring& spring : springs_) {
       if (!spring.law.unstressed.moves()) continue;
       const SpringLaw law = spring_law(spring.law, at.t, q);
-      const double s = spring.measure.value_and_gradient(q, g.data(), at, spring.followed);
+      const double s = spring.measure.value_and_gradient(q, v, g.data(), at, spring.followed);
       sum += spring_pull(spring.law, law, s, spring.measure.rate(g.data(), v) - law.rest_rate).reeling;
     }
     return sum;

@@ -64,6 +64,11 @@ Matrix atan2_hessian(double s, double c, const Vector& ds, const Vector& dc, con
                            r4;
 }
 
+// Of the sides of an angle, by |d_1 x d_2| and d_1 . d_2, but for rounding: they have no axis.
+bool in_line(double s, double c) {
+  return s <= 1e-14 * std::abs(c);
+}
+
 double on_branch(double angle, double near) {
   return angle - 2 * pi * std::round((angle - near) / (2 * pi));
 }
@@ -216,6 +221,32 @@ double MeasureFunction::value_and_gradient(const double* q, double* gradient, co
   return sum.value();
 }
 
+double MeasureFunction::value_and_gradient(const double* q, const double* v, double* gradient,
+                                           const Moment& at, int followed) const {
+  const double value = value_and_gradient(q, gradient, at, followed);
+  turn_in_line(q, v, 1.0, gradient);
+  return value;
+}
+
+// A moment ago d_1 x d_2 was against its rate now. What turns slower than this rests.
+void MeasureFunction::turn_in_line(const double* q, const double* v, double scale, double* gradient) const {
+  constexpr double rounding = 1e-9, rest = 1e-12;  // shares of the velocities; rad/s
+  each_term([&](const MeasureFunction& term, double c, std::size_t first, int) {
+    term.turn_in_line(q, v, scale * c, gradient + first);
+  });
+  if (kind_ != MeasureKind::angle || turns_) return;
+  const Vec3 d1 = edge(q, 0), d2 = edge(q, 2);
+  const double c = d1.dot(d2);
+  if (!in_line(d1.cross(d2).norm(), c)) return;
+  const Vec3 v1 = edge(v, 0), v2 = edge(v, 2), turning = d1.cross(v2) + v1.cross(d2);
+  const double size = turning.norm(), most = d1.norm() * v2.norm() + v1.norm() * d2.norm();
+  if (!(size > rounding * most && size > rest * std::abs(c))) return;
+  const Vec3 n = -turning / size;
+  Vec6 ds;
+  ds << d2.cross(n), n.cross(d1);
+  spread(Vec6(scale / c * ds), Eigen::Map<VectorXd>(gradient, std::ssize(stencil_)));
+}
+
 void MeasureFunction::add_hessian(const double* q, double scale,
                                   std::vector<Eigen::Triplet<double>>& entries) const {
   each_term([&](const MeasureFunction& term, double c, std::size_t, int) {
@@ -272,7 +303,7 @@ MeasureFunction::Angle MeasureFunction::angle_terms(const double* q) const {
     a.s = normal.norm();
     a.c = a.d1.dot(a.d2);
     a.dc << a.d2, a.d1;
-    const Vec3 n = a.s > 1e-14 * std::abs(a.c) ? Vec3(normal / a.s) : Vec3::Zero();
+    const Vec3 n = in_line(a.s, a.c) ? Vec3::Zero() : Vec3(normal / a.s);
     a.ds << a.d2.cross(n), n.cross(a.d1);
   } else {
     const double h1 = axis_.dot(a.d1), h2 = axis_.dot(a.d2);
@@ -388,7 +419,7 @@ double MeasureFunction::angle_curvature(const double* q, const double* v) const 
                            c - Course{h1 * h2, h1 * r2 + r1 * h2, 2 * r1 * r2});
   }
   const double s = n.norm();
-  if (s <= 1e-14 * std::abs(c.value)) return second_of_angle({s, 0, 0}, c);
+  if (in_line(s, c.value)) return second_of_angle({s, 0, 0}, c);
   const double s1 = n.dot(n1) / s;
   return second_of_angle({s, s1, (n1.squaredNorm() + n.dot(n2) - s1 * s1) / s}, c);
 }
@@ -420,7 +451,7 @@ void MeasureFunction::angle_hessian(const double* q, double* hess) const {
     const double c = a.c;
     hc << Mat3::Zero(), unit, unit, Mat3::Zero();
     const Mat3 h12 = 2 * a.d1 * a.d2.transpose() - a.d2 * a.d1.transpose() - c * unit;
-    if (a.s > 1e-14 * std::abs(c)) {
+    if (!in_line(a.s, c)) {
       hs << a.d2.squaredNorm() * unit - a.d2 * a.d2.transpose(), h12, h12.transpose(),
           a.d1.squaredNorm() * unit - a.d1 * a.d1.transpose();
       hs = ((hs - a.ds * a.ds.transpose()) / a.s).eval();

@@ -38,6 +38,10 @@ class MeasureFunction {
   // The same near the angles of a moment; `followed`: the first of its own among them, -1: as at t = 0.
   double value(const double* q, const Moment& at, int followed) const;
   double value_and_gradient(const double* q, double* gradient, const Moment& at, int followed) const;
+  // The same of a motion: where the sides of an angle without an axis lie in line, they turn about that axis
+  // about which they have come there.
+  double value_and_gradient(const double* q, const double* v, double* gradient, const Moment& at,
+                            int followed) const;
   // Hess s, dense, column by column, size of stencil squared.
   void hessian(const double* q, double* hess) const;
   // entries += scale * Hess s, by coordinates; terms of a combination meet in no entry.
@@ -58,6 +62,7 @@ class MeasureFunction {
 
  private:
   double near(const Moment& at, int followed) const { return at.near(followed, reference_); }
+  void turn_in_line(const double* q, const double* v, double scale, double* gradient) const;
   struct Angle;
   Angle angle_terms(const double* q) const;
   void angle_hessian(const double* q, double* hess) const;

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hinges without an axis whose rods pass each other in line: what acts there is what acts beside it.
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "core/diagnostics/diagnostics.hpp"
+#include "core/diagnostics/reactions.hpp"
+#include "tests/support/number.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace in_line_test {
+
+using testing::number;
+
+namespace {
+
+std::string triple(const Vec3& x) {
+  return "[" + number(x.x()) + ", " + number(x.y()) + ", " + number(x.z()) + "]";
+}
+
+// Two rods from a pin at O, straight (or folded onto each other) along u at t = 0, the outer one turning with
+// the rate w against the inner one, about n across both; A is held on its circle by a plane, so is B.
+std::string crank(const Vec3& u, const Vec3& n, double side, double w, const std::string& force) {
+  const Vec3 across = n.cross(u);
+  return "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = [0, 0, 0], fixed = true}, {name = "
+         "'A', position = " +
+         triple(u) + ", mass = 0.4}, {name = 'B', position = " + triple((1 + 0.5 * side) * u) +
+         ", velocity = " + triple(0.5 * side * w * across) +
+         ", mass = 0.3}]\nrods = [{nodes = ['O', 'A'], mass = 0.2}, {nodes = ['A', 'B'], mass = 0.1}]\n" +
+         force + "\n[solver]\nstages = 4\nstep = 0.001\nend_time = 0.003\n";
+}
+
+}  // namespace
+
+// c = 0.7 N m s/rad at 1.5 rad/s: the reaction across the rods has c w / 1 m in it. With the axis that the
+// rods turn about a hinge is never without one: the same, but for the rounding of some newtons.
+TEST_CASE("a damper of a hinge without an axis acts in line as one with its axis does") {
+  std::mt19937 dice(3);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int trial = 0; trial < 12; ++trial)
+    for (const char* kind : {"torsion_spring", "joint_damping"}) {
+      const bool plain = trial % 3 == 0;  // exactly in line, or by rounding
+      const Vec3 u = plain ? Vec3::UnitX() : Vec3(any(dice), any(dice), any(dice)).normalized(),
+                 n = plain ? Vec3::UnitZ() : u.cross(Vec3(any(dice), any(dice), any(dice))).normalized();
+      const double side = trial % 2 == 0 ? 1 : -1;
+      const std::string nodes = kind[0] == 't' ? "['O', 'A', 'B']" : "['A']";
+      const auto run = [&](const std::string& how, const std::string& axis) {
+        return testing::run_scene(crank(u, n, side, 1.5,
+                                        "[[forces]]\nkind = '" + how +
+                                            "'\nnodes = " + (how[0] == 't' ? "['O', 'A', 'B']" : nodes) +
+                                            "\ndamping = 0.7\n" + axis));
+      };
+      const Simulation without = run(kind, ""), with = run("torsion_spring", "axis = " + triple(n) + "\n");
+      CAPTURE(trial, kind);
+      const Diagnostics a = diagnose(without), b = diagnose(with);
+      for (std::size_t i = 0; i < a.t.size(); ++i) {
+        Vec3 off, all;
+        for (int k = 0; k < 3; ++k) {
+          const std::string column = std::string("O.reaction_") + "xyz"[k] + "_N";
+          off[k] = a.at(column).values[i] - b.at(column).values[i], all[k] = b.at(column).values[i];
+        }
+        CHECK(all.norm() > 0.5);
+        CHECK(off.norm() < 1e-9 * all.norm());
+      }
+      CHECK(a.at("dissipated_J").values.back() == Approx(b.at("dissipated_J").values.back()).epsilon(1e-9));
+    }
+}
+
+// A motor that takes the hinge through the straight pose: N along the angle, which it tells from 0 to 180
+// degrees. At the state in line it is that of the state before.
+TEST_CASE("a motor of a hinge without an axis gives in line what it gives just before") {
+  for (const double side : {1.0, -1.0}) {
+    const MeasureFunction angle({MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0, {}}, Deployment{});
+    const Vec3 u = Vec3(0.48, 0.6, 0.64), n = u.cross(Vec3::UnitX()).normalized(), across = n.cross(u);
+    VectorXd in_line(9), v(9), g(12), before(12);
+    in_line << Vec3::Zero(), u, (1 + 0.5 * side) * u;
+    v << Vec3::Zero(), 0.3 * across, 0.9 * across;
+    const Moment at(0.0);
+    CHECK(angle.value_and_gradient(in_line.data(), v.data(), g.data(), at, -1) ==
+          Approx(side > 0 ? pi : 0).margin(1e-15));
+    CHECK(g.norm() > 1);
+    const VectorXd q = in_line - 1e-7 * v;
+    angle.value_and_gradient(q.data(), before.data(), at, -1);
+    CHECK((g - before).norm() < 1e-6 * g.norm());
+    // What turns as one, or rests, has no axis.
+    v << Vec3::Zero(), across, (1 + 0.5 * side) * across;
+    angle.value_and_gradient(in_line.data(), v.data(), g.data(), at, -1);
+    CHECK(g.norm() < 1e-15);
+    v.setZero();
+    angle.value_and_gradient(in_line.data(), v.data(), g.data(), at, -1);
+    CHECK(g.norm() < 1e-15);
+  }
+}
+
+}  // namespace in_line_test
