@@ -42,7 +42,8 @@ class ForceBlock {
   virtual bool dissipates() const { return has_power() && dissipative(); }
   virtual bool supplies() const { return has_power() && !dissipative(); }
   // Where that power is the rate of a function of the pose, which a difference tells better than a
-  // quadrature: what has been taken [J], dtaken/dt = -power.
+  // quadrature: what has been taken [J], dtaken/dt = -power. All of it (takes_by_pose() is true), or what
+  // dissipation() leaves out.
   virtual bool takes_by_pose() const { return false; }
   virtual double taken(const Moment&, const double*) const { return 0.0; }
   // Of rods that give: methods may take these forces as unknowns instead (ElasticRods).

@@ -60,6 +60,7 @@ class DryFriction final : public ForceBlock {
     return sum;
   }
   double taken(const Moment& at, const double* q) const override {
+    if (!takes_by_pose()) return 0.0;
     double sum = 0;
     for (const Slipping& s : slipping_) sum += s.force * s.measure.value(q, near(s, at));
     return sum;

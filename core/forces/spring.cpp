@@ -51,7 +51,8 @@ class Springs final : public ForceBlock {
       const double s = spring.measure.value_and_gradient(q, v, g.data(), at, spring.followed);
       const SpringLaw law = spring_law(spring.law, at.t, q);
       const double rate = spring.law.damping > 0 ? spring.measure.rate(g.data(), v) - law.rest_rate : 0.0;
-      if (law.drum >= 0) f[law.drum] -= scale * law.by_drum * pull_of(spring.law, s - law.rest).energy;
+      if (law.drum >= 0 && !spring.law.slack)
+        f[law.drum] -= scale * law.by_drum * pull_of(spring.law, s - law.rest).energy;
       const double pull = scale * spring_pull(spring.law, law, s, rate).tension;
       if (pull == 0.0) continue;
       if (spring.pulleys) spring.pulleys->weigh(v, g.data());
@@ -62,11 +63,14 @@ class Springs final : public ForceBlock {
 
   double potential(const Moment& at, const double* q) const override {
     double sum = straight_.potential(q);
-    for (const Spring& spring : springs_) {
-      const SpringLaw law = spring_law(spring.law, at.t, q);
-      const double s = spring.measure.value(q, at, spring.followed);
-      sum += law.stiffness * pull_of(spring.law, s - law.rest).energy;
-    }
+    for (const Spring& spring : springs_) sum += potential_of(spring, at, q);
+    return sum;
+  }
+
+  double taken(const Moment& at, const double* q) const override {
+    double sum = straight_.taken(q);
+    for (const Spring& spring : springs_)
+      if (lets_go(spring.law)) sum -= potential_of(spring, at, q);
     return sum;
   }
 
@@ -79,7 +83,7 @@ class Springs final : public ForceBlock {
     Gradient g(size_);
     double sum = straight_.dissipation(q, v);
     for (const Spring& spring : springs_) {
-      if (!(spring.law.damping > 0) && !spring.pulleys) continue;
+      if ((!(spring.law.damping > 0) && !spring.pulleys) || lets_go(spring.law)) continue;
       const double s = spring.measure.value_and_gradient(q, v, g.data(), at, spring.followed);
       const SpringLaw law = spring_law(spring.law, at.t, q);
       const double rate = spring.measure.rate(g.data(), v), stretching = rate - law.rest_rate;
@@ -134,6 +138,16 @@ class Springs final : public ForceBlock {
   }
 
  private:
+  // Slack while it is still stretched, as its damper would push: it gives no force, and what it has stored is
+  // gone by and by as it comes to its length. (Of what is reeled in the winch takes a part of that.)
+  static bool lets_go(const Force& law) { return law.slack && law.damping > 0 && !law.unstressed.moves(); }
+
+  static double potential_of(const Spring& spring, const Moment& at, const double* q) {
+    const SpringLaw law = spring_law(spring.law, at.t, q);
+    const double s = spring.measure.value(q, at, spring.followed);
+    return law.stiffness * pull_of(spring.law, s - law.rest).energy;
+  }
+
   double reeling(const Moment& at, const double* q, const double* v) const {
     Gradient g(size_);
     double sum = 0;

@@ -51,12 +51,14 @@ void StraightSprings::add(const double* q, const double* v, double scale, double
   }
 }
 
+double StraightSprings::potential_of(const Member& m, const double* q) {
+  const double s = (node_vector(q, m.b) - node_vector(q, m.a)).norm();
+  return m.stiffness * pull_of(m, s - m.rest).energy;
+}
+
 double StraightSprings::potential(const double* q) const {
   double sum = 0;
-  for (const Member& m : members_) {
-    const double s = (node_vector(q, m.b) - node_vector(q, m.a)).norm();
-    sum += m.stiffness * pull_of(m, s - m.rest).energy;
-  }
+  for (const Member& m : members_) sum += potential_of(m, q);
   return sum;
 }
 
@@ -64,7 +66,14 @@ double StraightSprings::dissipation(const double* q, const double* v) const {
   double sum = 0;
   Tension at;
   for (const Member& m : members_)
-    if (m.damping > 0 && pulls(m, q, v, at)) sum -= (at.N - at.elastic) * at.rate;
+    if (m.damping > 0 && !m.slack && pulls(m, q, v, at)) sum -= (at.N - at.elastic) * at.rate;
+  return sum;
+}
+
+double StraightSprings::taken(const double* q) const {
+  double sum = 0;
+  for (const Member& m : members_)
+    if (m.damping > 0 && m.slack) sum -= potential_of(m, q);
   return sum;
 }
 

@@ -33,7 +33,8 @@ class StraightSprings {
 
   void add(const double* q, const double* v, double scale, double* f) const;
   double potential(const double* q) const;
-  double dissipation(const double* q, const double* v) const;
+  double dissipation(const double* q, const double* v) const;  // but for what is slack
+  double taken(const double* q) const;                         // of what is slack
   void derivatives(const double* q, const double* v, ForceDerivative& by_q, ForceDerivative& by_v) const;
 
  private:
@@ -43,6 +44,7 @@ class StraightSprings {
     bool one_sided, slack;
   };
   struct Tension;
+  static double potential_of(const Member& m, const double* q);
   static bool pulls(const Member& m, const double* q, const double* v, Tension& at);
 
   std::vector<Member> members_;

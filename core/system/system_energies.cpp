@@ -48,8 +48,7 @@ double System::power(bool dissipative, double t, const ConstVec& q, const ConstV
 
 double System::taken(const ConstVec& q) const {
   double sum = 0;
-  for (const auto& block : data_->forces)
-    if (block->takes_by_pose()) sum += block->taken(moment(since_), q.data());
+  for (const auto& block : data_->forces) sum += block->taken(moment(since_), q.data());
   return sum;
 }
 
