@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/constraints/linear_rows.hpp"
 #include "core/forces/pin_loads.hpp"
 #include "core/structure/measure.hpp"
 #include "core/structure/structure_error.hpp"
@@ -25,7 +26,8 @@ class DryFriction final : public ForceBlock {
       slipping_.push_back(
           {MeasureFunction(f.measure, structure.deployment), f.slip * f.kinetic, followed[i],
            f.slip * PinLoads::arm(f), i, f.slip,
-           f.measure.kind == MeasureKind::angle && !counts_turns(f.measure) ? f.measure : Measure()});
+           f.measure.kind == MeasureKind::angle && !counts_turns(f.measure) ? f.measure : Measure(),
+           f.measure.kind == MeasureKind::length ? passing * reference_length(structure) : 0.0});
       if (!(PinLoads::arm(f) > 0)) continue;
       if (!loads_) loads_ = std::make_unique<PinLoads>(structure, node_mass);
       if (const int giving = loads_->giving_rod(i); giving >= 0)
@@ -101,6 +103,7 @@ class DryFriction final : public ForceBlock {
   }
 
  private:
+  static constexpr double passing = 1e-7;  // of the structure's length
   struct Slipping {
     MeasureFunction measure;
     double force;  // slip tau_k [N] or [N m]
@@ -109,6 +112,7 @@ class DryFriction final : public ForceBlock {
     std::size_t index;
     int slip;
     Measure measure_of;  // of an angle without a sign
+    double beside_zero;  // of a distance [m]; 0: it is none
   };
   // Whose pin's load is that of a rod which gives.
   struct ByRod {
@@ -154,6 +158,8 @@ class DryFriction final : public ForceBlock {
   static double goes_on(const Slipping& s, const Moment& at, const double* q, const double* v, VectorXd& g) {
     constexpr double a_little = 0.01, in_line = 1e-6;  // [rad]; the motion seldom turns round so near
     const double angle = gradient(s, at, q, g), beside = std::min(angle, pi - angle);
+    if (s.beside_zero > 0)  // nodes that pass each other
+      return angle <= s.beside_zero && s.slip * s.measure.rate(g.data(), v) < 0 ? -1.0 : 1.0;
     if (s.measure_of.nodes.empty() || !(beside < a_little)) return 1.0;
     if (beside > in_line && s.slip * s.measure.rate(g.data(), v) >= 0) return 1.0;
     const std::vector<int>& n = s.measure_of.nodes;

@@ -217,13 +217,14 @@ class Change {
     for (Index r = 0; r < count(); ++r) {
       const std::size_t i = side(r), k = static_cast<std::size_t>(r);
       if (sides_.is_friction(i) && std::abs(b_[r]) <= no_load * D_(r, r) * sides_.holding(i)) b_[r] = 0;
+      const bool turns = crossed(r) && sides_.comes_to_zero(i, system_, out_.state);
       if (passes_[k]) {
-        slide(r,
-              std::abs(b_[r]) > rounds_[r] || sides_.slip(i) == 0 ? (b_[r] > 0 ? 1 : -1) : -sides_.slip(i));
+        const bool by_force = std::abs(b_[r]) > rounds_[r] || sides_.slip(i) == 0;
+        slide(r, turns || (by_force ? b_[r] > 0 : sides_.slip(i) < 0) ? 1 : -1);
         continue;
       }
       if (!at_rest(r, rate[r]) && !falls_back(r, rate[r])) {
-        if (sides_.is_friction(i)) slide(r, rate[r] > 0 ? 1 : -1);
+        if (sides_.is_friction(i)) slide(r, turns || rate[r] > 0 ? 1 : -1);
         continue;
       }
       if (!movable(r)) {

@@ -16,6 +16,8 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double force_zero = 1e-10;  // of the largest multiplier
 constexpr double handed_over = 1e4;   // of what counts as zero for a motor's torque
+// Of what counts as touching: a distance within that is taken as one that grows, once it has come to zero.
+constexpr double beside_zero = 100;
 
 // Do they measure the same? Ends of a length may be told either way round.
 bool same(const Measure& a, const Measure& b) {
@@ -145,6 +147,13 @@ int OneSided::away_from_kink(std::size_t i, const System& system, const State& s
   VectorXd q(system.coordinates());
   system.expand(state.z, q);
   return measure(i).is_angle() && measure(i).value(q.data(), near(i, state)) > pi / 2 ? -1 : 1;
+}
+
+bool OneSided::comes_to_zero(std::size_t i, const System& system, const State& state) const {
+  if (!is_friction(i) || friction(i).measure.kind != MeasureKind::length) return false;
+  VectorXd q(system.coordinates());
+  system.expand(state.z, q);
+  return measure(i).value(q.data()) <= beside_zero * touching(i);
 }
 
 void OneSided::stick(std::size_t i, const System& system, const State& state) {
@@ -376,8 +385,10 @@ void OneSided::measure_friction(const VectorXd& q, const VectorXd& v, const Stat
                                 Probe& probe) {
   const Friction& f = friction(i);
   gradient_.resize(static_cast<Index>(f.function.stencil().size()));
-  f.function.value_and_gradient(q.data(), gradient_.data(), near(i, state));
-  const double rate = f.function.rate(gradient_.data(), v.data());
+  const double value = f.function.value_and_gradient(q.data(), gradient_.data(), near(i, state));
+  double rate = f.function.rate(gradient_.data(), v.data());
+  if (f.measure.kind == MeasureKind::length && value <= (f.slip > 0 ? beside_zero : 1) * touching(i))
+    rate = std::abs(rate);
   probe.margins[static_cast<Index>(i)] =
       f.slip != 0 ? f.slip * rate / rounded_rate(i) : 2 - std::abs(rate) / zero_rate(i);
 }

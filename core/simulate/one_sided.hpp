@@ -95,6 +95,8 @@ class OneSided {
   // The only sense in which an angle without a sign leaves 0 or pi, a distance 0: their gradients end there.
   // 0: of other measures, which no force moves there.
   int away_from_kink(std::size_t i, const System& system, const State& state) const;
+  // Friction on a distance that is nothing: from here on it grows, whatever the rate of a moment ago.
+  bool comes_to_zero(std::size_t i, const System& system, const State& state) const;
   void stand(std::size_t i) { active_[i] = false, frictions_[i - first_friction()].slip = 0; }
   void stick(std::size_t i, const System& system, const State& state);
   // Of those that stand by those that stick: c_ji of friction_hold.hpp, frictions by frictions.
