@@ -404,8 +404,8 @@ VectorXd pole(const std::vector<NearDeployed>& samples) {
   return fits[best];
 }
 
-// What acts just before the deployed pose, where that is not what acts in it: dampers of hinges whose rods
-// are in line there, all of them or those that rounding has put so, act about no axis. Empty where it is.
+// What acts just before the deployed pose, where that is not what acts in it: on hinges without an axis whose
+// rods are in line there, all of them or those that rounding has put so, and hardly turn. Empty where it is.
 VectorXd other_force_before(Index1& index1, const std::vector<NearDeployed>& samples, const State& at) {
   constexpr double other = 1e-7, known = 0.1;  // shares of what acts, and of the difference
   std::vector<VectorXd> values;

@@ -126,8 +126,7 @@ TEST_CASE("forces that grow without bound next to a singular pose are not smooth
 
 // Nothing jumps in the last step before a deployed pose: the forces there continue those of the five states
 // before, as the polynomial of degree 4 tells them to 2e-3. A modulus of rigid rods changes how redundant
-// rods share them, and no motion. Dampers of hinges whose rods are in line there act about no axis; just
-// before it they do.
+// rods share them, and no motion. Dampers of hinges whose rods are in line there act as just before it.
 TEST_CASE("forces in a singular deployed pose are the limit of those before, with moduli and without") {
   const std::vector<std::string> sheet{"structure.rows=2", "structure.columns=2",
                                        "structure.deployed_angle=0"};
@@ -285,7 +284,7 @@ TEST_CASE("a Hoberman ring has smooth forces through its largest ring") {
 // A ring whose chord hinges are damped: where it is flat, half of what opens a hinge and the torque of its
 // damper, c times twice the fold rate, stand in each post: N = -f / 2 + 6 c rate / l, by the vertical balance
 // of a hinge and of a corner with the mass of their rods. Which rods rounding has put exactly in line there,
-// whose damper acts about no axis, is another matter for each hinge, each number of units and each f.
+// whose angle has no axis of its own, is another matter for each hinge, each number of units and each f.
 TEST_CASE("dampers of hinges act in the flat pose as they do just before it, whichever are exactly in line") {
   constexpr double c = 5, length = 2;
   for (const char* model : {"path", "full", "sector"})
