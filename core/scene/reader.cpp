@@ -181,6 +181,19 @@ void read_materials(const std::vector<const TomlTree*>& trees, RenderOptions& re
   }
 }
 
+// What other tables of [render] leave without meaning.
+void warn_of_idle_looks(TableReader& table, const RenderOptions& render) {
+  const RenderOptions usual;
+  if (render.colour_by != usual.colour_by) {
+    const std::string why = "in pictures with colour_by = " + in_quotes(render.colour_by) +
+                            ", whose colours the rods have; exported models have it";
+    table.warn_idle("material", why, render.material == usual.material);
+    table.warn_idle("materials", why, false);
+  }
+  if (!render.camera_keys.empty() && !render.fit)
+    table.warn_idle("camera", "beside camera_keys, which say from where", render.camera == usual.camera);
+}
+
 void read_render(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
   const TomlTree* found = root.table("render");
   TableReader table(found, "render", place(found, tree), notes);
@@ -200,6 +213,8 @@ void read_render(TableReader& root, const TomlTree& tree, Scene& scene, SceneNot
   }
   read_camera_keys(keys, scene.render, notes);
   read_materials(materials, scene.render, notes);
+  table.warn_idle(render_params(), values);
+  warn_of_idle_looks(table, scene.render);
 }
 
 void read_title(TableReader& root, const TomlTree& tree, const TomlTree& own, Scene& scene) {

@@ -28,7 +28,9 @@ std::vector<Key> picture_keys() {
       {real_param("fps", "frames/s", 0, 0.1, 1000, "frames per second of the film"), &R::fps},
       {real_param("speed", "", 0, 1e-6, 1e6, "seconds of motion per second of film"), &R::speed},
       {integer_param("supersample", 0, 1, 4, "every pixel is the mean of N x N"), &R::supersample},
-      {boolean_param("transparent", false, "no background"), &R::transparent},
+      {only_with("look", {"studio", "dark", "space", "blueprint"},
+                 boolean_param("transparent", false, "no background")),
+       &R::transparent},
       {choice_param("look", "", {"studio", "dark", "space", "blueprint", "print"},
                     "how everything looks; `unfurl list looks`"),
        &R::look},
@@ -36,8 +38,9 @@ std::vector<Key> picture_keys() {
                     {"group", "axial_force", "stress", "buckling", "speed", "constraint_error"},
                     "what the colours of the rods stand for"),
        &R::colour_by},
-      {vector_param("colour_range", "", {0, 0},
-                    "from which value to which the colours run; [0, 0]: the run's"),
+      {only_with("colour_by", {"axial_force", "stress", "buckling", "speed", "constraint_error"},
+                 vector_param("colour_range", "", {0, 0},
+                              "from which value to which the colours run; [0, 0]: the run's")),
        &R::colour_range},
       {real_param(
            "rod_scale", "", 0, 0, 1000,
@@ -57,7 +60,9 @@ std::vector<Key> overlay_keys() {
       {boolean_param("errors", false, "largest constraint error and energy imbalance so far"), &R::errors},
       {boolean_param("scale_bar", false, "a length to compare with"), &R::scale_bar},
       {boolean_param("axes", false, "the directions of x, y and z"), &R::axes},
-      {boolean_param("dimensions", false, "width, depth and height (always on in the look blueprint)"),
+      {only_with(
+           "look", {"studio", "dark", "space", "print"},
+           boolean_param("dimensions", false, "width, depth and height (always on in the look blueprint)")),
        &R::dimensions},
       {boolean_param("node_labels", false, "names of nodes, where there is room"), &R::node_labels},
       {boolean_param("rod_labels", false, "names of rods, where there is room"), &R::rod_labels},
@@ -81,8 +86,10 @@ std::vector<Key> camera_keys() {
                   "after the motion one turn around its end in so much film time"),
        &R::turntable},
       {boolean_param("fit", false, "the picture's shape is the motion's, with as many pixels"), &R::fit},
-      {real_param("depth_of_field", "", 0, 0, 1,
-                  "blurs what is off the middle: the lens's opening over its distance; 0.02 is much"),
+      {only_with(
+           "projection", {"perspective"},
+           real_param("depth_of_field", "", 0, 0, 1,
+                      "blurs what is off the middle: the lens's opening over its distance; 0.02 is much")),
        &R::depth_of_field},
   };
 }
@@ -110,7 +117,9 @@ std::vector<Key> film_keys() {
       {boolean_param("webp", false, "make animation.webp"), &R::webp},
       {boolean_param("gif", false, "make animation.gif"), &R::gif},
       {boolean_param("mp4", false, "make animation.mp4 where ffmpeg is"), &R::mp4},
-      {integer_param("gif_width", 0, 16, 8192, "the GIF is at most so many pixels wide"), &R::gif_width},
+      {only_with("gif", {"true"},
+                 integer_param("gif_width", 0, 16, 8192, "the GIF is at most so many pixels wide")),
+       &R::gif_width},
   };
 }
 

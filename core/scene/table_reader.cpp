@@ -193,11 +193,14 @@ void TableReader::warn_idle(const std::vector<ParamSpec>& specs, const ParamSet&
     if (!has(spec.name)) continue;
     const std::string reason = idle_reason(spec, specs, values);
     if (reason.empty()) continue;
-    if (!overridden(*table_->find(spec.name)) &&
-        (which == Idle::from_command_line || same_value(values.value(spec.name), spec.fallback)))
-      continue;
-    notes_.warnings.push_back({table_->find(spec.name)->where, key(spec.name), "does nothing " + reason});
+    warn_idle(spec.name, reason,
+              which == Idle::from_command_line || same_value(values.value(spec.name), spec.fallback));
   }
+}
+
+void TableReader::warn_idle(std::string_view name, const std::string& reason, bool may_stand) {
+  if (!has(name) || (may_stand && !overridden(*table_->find(name)))) return;
+  notes_.warnings.push_back({table_->find(name)->where, key(name), "does nothing " + reason});
 }
 
 void TableReader::warn_overridden(std::initializer_list<std::string_view> keys, std::string_view reason) {

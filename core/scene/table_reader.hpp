@@ -57,6 +57,9 @@ class TableReader {
   // Warns of every key that is given although it means nothing with the values that the others have; not of
   // one that a file gives its default, as every scene does that is written with all of its keys.
   void warn_idle(const std::vector<ParamSpec>& specs, const ParamSet& values, Idle which = Idle::all);
+  // The same of one key and for this reason; what a file may keep (`may_stand`) is told where it is set
+  // alone.
+  void warn_idle(std::string_view name, const std::string& reason, bool may_stand);
   // Warns that those of these keys that were set on a command line do nothing `reason`, if that was not said.
   void warn_overridden(std::initializer_list<std::string_view> keys, std::string_view reason);
 

@@ -149,6 +149,40 @@ TEST_CASE("keys of structures, surfaces and the solver that do nothing are warne
         "s.toml:4:9: surfaces[0].cells: does nothing with kind = 'membrane'\n");
 }
 
+TEST_CASE("keys of pictures that do nothing with the others are warned of") {
+  struct Case {
+    const char *key, *value, *usual, *with, *without, *reason;
+  };
+  const std::string exported = ", whose colours the rods have; exported models have it",
+                    by_stress = "in pictures with colour_by = 'stress'" + exported;
+  const Case cases[] = {
+      {"colour_range", "[1, 2]", "[0, 0]", "", "colour_by = 'speed'", "with colour_by = 'group'"},
+      {"gif_width", "320", "640", "gif = false", "gif = true", "with gif = false"},
+      {"depth_of_field", "0.02", "0", "projection = 'orthographic'", "", "with projection = 'orthographic'"},
+      {"transparent", "true", "false", "look = 'print'", "look = 'dark'", "with look = 'print'"},
+      {"dimensions", "true", "false", "look = 'blueprint'", "look = 'print'", "with look = 'blueprint'"},
+      {"material", "'cfrp'", "'anodised'", "colour_by = 'stress'", "", by_stress.c_str()},
+      {"materials", "[{group = '*', material = 'cfrp'}]", nullptr, "colour_by = 'stress'", "",
+       by_stress.c_str()},
+      {"camera", "'top'", "'auto'", "camera_keys = [{time = 0}]", "camera_keys = [{time = 0}]\nfit = true",
+       "beside camera_keys, which say from where"}};
+  const auto said = [](const std::string& keys, const std::vector<std::string>& set) {
+    return warnings_of(read_scene_text(arms + "[render]\n" + keys, "s.toml", set));
+  };
+  for (const Case& c : cases) {
+    const std::string key = std::string("render.") + c.key, line = std::string(c.key) + " = ",
+                      with = std::string(c.with) + "\n";
+    INFO(key);
+    CHECK(said(line + c.value + "\n" + with, {}) ==
+          "s.toml:16:" + std::to_string(line.size() + 1) + ": " + key + ": does nothing " + c.reason + "\n");
+    CHECK(said(line + c.value + "\n" + c.without + "\n", {}).empty());
+    if (!c.usual) continue;
+    // A file may have the default, as every scene that is written out; a command line says what it wants.
+    CHECK(said(line + c.usual + "\n" + with, {}).empty());
+    CHECK(said(with, {key + "=" + c.usual}) == "--set " + key + ": does nothing " + c.reason + "\n");
+  }
+}
+
 TEST_CASE("a material of a group that is not there is warned of") {
   const auto notes = [](const std::string& group) {
     std::string all;
