@@ -154,6 +154,16 @@ std::string near_kind(const std::string& word) {
   return near.empty() ? "" : " (did you mean " + in_quotes(near) + "?)";
 }
 
+}  // namespace
+
+bool begins_as_term(const std::string& text) {
+  double coefficient = 0;
+  return Words(text).number(coefficient) ||
+         std::ranges::any_of(term_kinds, [&](const TermKind& kind) { return text.starts_with(kind.name); });
+}
+
+namespace {
+
 // False, a problem noted: a line that it is measured from has no direction. A deployment may begin at the
 // length 0, which acts on nothing.
 bool term_is_defined(const SceneElement& e, MemberFinder& find, const std::string& key, MeasureKind kind,
@@ -385,74 +395,9 @@ std::optional<Measure> sum_of_terms(const SceneElement& e, MemberFinder& find, c
     terms.push_back(std::move(*term));
   }
   if (terms.empty()) return {};
-  return sum_of(std::move(terms));
-}
-
-namespace {
-
-// Of the entry that [deployment] names, where it names one.
-std::optional<Measure> measure_of_entry(const Scene& scene, MemberFinder& find, bool& named) {
-  const auto& terms = scene.deployment.terms;
-  for (const bool force : {true, false})
-    for (const SceneElement& element : force ? scene.forces : scene.constraints) {
-      if (terms.size() != 1 || element.name != terms.front() || !element.enabled) continue;
-      named = true;
-      const ElementKind* kind = find_kind(force ? scene_forces() : scene_constraints(), element.kind);
-      if (kind && kind->measure) return kind->measure(element, find);
-      find.problem(scene.deployment, "measure", in_quotes(element.name) + " measures nothing");
-    }
-  return {};
-}
-
-}  // namespace
-
-void give_deployment(const Scene& scene, Structure& structure) {
-  MemberFinder find(structure);
-  const SceneElement& e = scene.deployment;
-  bool named = false;
-  std::optional<Measure> measure = measure_of_entry(scene, find, named);
-  if (!named) measure = sum_of_terms(e, find, "measure");
-  find.throw_problems();
-  if (measure->kind == MeasureKind::combination && measure->terms.size() == 1 &&
-      measure->terms[0].coefficient == 1.0) {
-    const Measure only = measure->terms[0].measure;
-    measure = only;
-  }
-  const double unit = is_angle(*measure) ? radians_per_degree : 1.0;
-  double initial = find.initial(*measure);
-  Deployment& d = structure.deployment;
-  d.measured = true;
-  d.deployed = unit * e.values.real("deployed");
-  d.stowed = unit * e.values.real("stowed");
-  if (std::isnan(d.stowed))
-    d.stowed = initial;
-  else if (counts_turns(*measure))  // the turn on which it begins is that of the values given
-    measure->reference = initial -= 2 * pi * std::round((initial - 0.5 * (d.stowed + d.deployed)) / (2 * pi));
-  d.measure = *measure;
-  // Where it turns back a measure can be reached, but nothing holds it there.
-  const MeasureRange range = range_of(*measure);
-  const double same = find.same(*measure, d.deployed);
-  if (d.deployed < range.low - same || d.deployed > range.high + same)
-    find.problem(e, "deployed", "is never reached: " + values_within(*measure));
-  else if (scene.solver.at_deployed == "latch" &&
-           (d.deployed <= range.low + same || d.deployed >= range.high - same))
-    find.problem(e, "deployed",
-                 "cannot be held by a latch, as the measure turns back there: " + values_within(*measure));
-  const double way = d.deployed - d.stowed;
-  double factors = measure->kind == MeasureKind::combination ? 0.0 : 1.0;
-  for (const MeasureTerm& term : measure->terms) factors += std::abs(term.coefficient);
-  if (!(std::abs(way) > find.same(*measure, d.stowed)))
-    find.problem(e, "deployed", "is the value when stowed, too: nothing deploys");
-  else if (is_angle(*measure) && std::abs(way) >= 2 * pi * factors)
-    find.problem(e, "deployed", "must be less than a turn away from stowed");
-  else if (!((d.deployed - initial) / way > 1e-9)) {
-    std::ostringstream text;
-    text.precision(15);
-    text << "is reached already at t = 0, where the measure is " << initial / unit;
-    find.problem(e, "deployed", text.str());
-  }
-  find.throw_problems();
-  note_long_way(e, "deployed", d.measure, initial, d.deployed, structure);
+  Measure sum = sum_of(std::move(terms));
+  if (!find.varies(e, key, sum)) return {};
+  return sum;
 }
 
 const std::vector<ElementKind>& combined_kinds() {

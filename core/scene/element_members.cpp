@@ -3,7 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "core/scene/scene.hpp"
 #include "core/structure/measure.hpp"
@@ -263,6 +266,52 @@ bool MemberFinder::apart(const SceneElement& element, const std::string& key, in
   problem(element, key,
           in_quotes(name_of(a)) + " and " + in_quotes(name_of(b)) +
               " must not be at the same place at t = 0: there is no line through them");
+  return false;
+}
+
+// Lengths of rigid rods, and what is measured between held nodes.
+bool MemberFinder::stays(const Measure& term) const {
+  const auto& n = term.nodes;
+  const auto is_held = [&](int node) {
+    return std::ranges::any_of(structure_.constraints, [&](const Constraint& c) {
+      return c.kind == "fixed" && c.nodes == std::vector{node};
+    });
+  };
+  if (!n.empty() && std::ranges::all_of(n, is_held)) return true;
+  return term.kind == MeasureKind::length && std::ranges::any_of(structure_.rods, [&](const Rod& rod) {
+           const bool ends = (rod.a == n[0] && rod.b == n[1]) || (rod.a == n[1] && rod.b == n[0]);
+           return ends && !rod.gives && rod.expansion == 0;
+         });
+}
+
+// In poses without any order all derivatives are those of round-off.
+bool MemberFinder::cancels(const Measure& sum) const {
+  const MeasureFunction function(sum, structure_.deployment);
+  const std::vector<int>& at = function.stencil();
+  std::vector<double> gradient(at.size());
+  for (const double seed : {0.6180339887498949, 0.41421356237309515}) {
+    VectorXd q(start_.size());
+    for (const int i : at) q[i] = std::fmod(seed * (i + 1.0) * (i + 1.0), 1.0);  // no four of a plane
+    function.value_and_gradient(q.data(), gradient.data());
+    std::map<int, std::pair<double, double>> by_coordinate;  // sum, and of what size its parts are
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      auto& [total, size] = by_coordinate[at[k]];
+      total += gradient[k], size += std::abs(gradient[k]);
+    }
+    for (const auto& [coordinate, found] : by_coordinate)
+      if (!(std::abs(found.first) <= 1e-12 * found.second)) return false;
+  }
+  return true;
+}
+
+bool MemberFinder::varies(const SceneElement& element, const std::string& key, const Measure& sum) {
+  Measure rest = sum;
+  std::erase_if(rest.terms, [&](const MeasureTerm& term) { return stays(term.measure); });
+  if (!rest.terms.empty() && !cancels(rest)) return true;
+  problem(element, key,
+          std::string("is the same whatever moves: ") +
+              (rest.terms.empty() ? "rigid rods keep their lengths, and held nodes their places"
+                                  : "its terms cancel"));
   return false;
 }
 

@@ -61,6 +61,8 @@ class MemberFinder {
   bool angle_is_defined(const SceneElement& element, const Measure& measure, const std::string& key = "");
   // Lines of an angle that leave its hinge along a rod that was cut to bend are its tangent there.
   void follow_bends(Measure& angle) const;
+  // False, a problem noted for `key`: a sum that nothing changes that moves.
+  bool varies(const SceneElement& element, const std::string& key, const Measure& sum);
   double initial(const Measure& measure) const;  // at the structure's start
   // Values of the measure that are no further apart are one [m] or [rad]: what is typed or worked out
   // elsewhere has some nine digits, of a length beside the structure's size.
@@ -73,6 +75,8 @@ class MemberFinder {
     std::string whole;
     int first, last;  // parts
   };
+  bool stays(const Measure& term) const;
+  bool cancels(const Measure& sum) const;
   std::vector<int> rods_matching(const std::string& pattern) const;
   Vec3 start_of(int node) const { return start_.segment<3>(3 * node); }
   const std::string& name_of(int node) const { return structure_.nodes[static_cast<std::size_t>(node)].name; }
@@ -100,6 +104,8 @@ struct ElementAdder {
 std::optional<Measure> path_of(const SceneElement& element, MemberFinder& find);
 std::optional<Measure> terms_of(const SceneElement& element, MemberFinder& find);
 std::optional<Measure> sum_of_terms(const SceneElement& element, MemberFinder& find, const std::string& key);
+// A number or a kind of measure is its first word.
+bool begins_as_term(const std::string& text);
 // Notes that a single dihedral is to go from `initial` to `target`, which `key` gives, by more than half a
 // turn [rad, times its coefficient]: its sign may be another than was thought.
 void note_long_way(const SceneElement& element, const std::string& key, const Measure& measure,

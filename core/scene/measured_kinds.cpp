@@ -161,11 +161,19 @@ void push_stop(const SceneElement& e, ElementAdder& to, Measure measure) {
   to.structure.stops.push_back(std::move(stop));
 }
 
-// |x_a - x_b| <= c. The nodes may begin at one place: what acts is the rim, which they are not at.
-void add_clearance(const SceneElement& e, ElementAdder& to) {
+// The nodes may begin at one place: what acts is the rim, which they are not at.
+std::optional<Measure> way_of_pin(const SceneElement& e, MemberFinder& find) {
   Measure measure;
-  measure.nodes = to.find.nodes(e, false);
-  if (measure.nodes.size() != 2) return;
+  measure.nodes = find.nodes(e, false);
+  if (measure.nodes.size() != 2) return {};
+  return measure;
+}
+
+// |x_a - x_b| <= c.
+void add_clearance(const SceneElement& e, ElementAdder& to) {
+  const auto found = way_of_pin(e, to.find);
+  if (!found) return;
+  const Measure& measure = *found;
   const double clearance = e.values.real("clearance"), initial = to.find.initial(measure);
   if (initial > clearance + to.find.same(measure, clearance)) {
     std::ostringstream text;
@@ -230,7 +238,7 @@ const std::vector<ElementKind>& measured_kinds() {
       {"angle_stop", "end stop: the angle between two rods, or the fold angle, stays within limits",
        Members::angle, angle_stop_params, add_stop<driven_angle>, angle_of, true},
       {"clearance", "a pin with play: two nodes stay within a distance of each other", Members::two_nodes,
-       clearance_params, add_clearance, nullptr, true},
+       clearance_params, add_clearance, way_of_pin, true},
   };
   return kinds;
 }
