@@ -32,14 +32,7 @@ namespace fs = std::filesystem;
 SweepPlan plan_of(const Arguments& arguments) {
   SweepPlan plan{scene_source(find_scene(arguments.names.front()), arguments.overrides), {}, {}, {}};
   for (const auto& text : arguments.study.vary) plan.axes.push_back(parse_axis(text));
-  const auto columns = columns_of(build_model(plan.source.read()));
-  std::string name;
-  for (const char c : arguments.study.measure + ",") {
-    if (c != ',')
-      name += c;
-    else if (!name.empty())
-      plan.measures.push_back(find_measure(std::exchange(name, ""), columns));
-  }
+  plan.measures = find_measures(arguments.study.measure, columns_of(build_model(plan.source.read())));
   if (!arguments.study.shard.empty()) plan.shard = parse_shard(shard_of(arguments.study.shard));
   check_plan(plan);
   return plan;

@@ -375,4 +375,27 @@ RunMeasure find_measure(const std::string& name, const std::vector<std::string>&
                    " (or max:, min:, final: and a column of series.csv)");
 }
 
+std::vector<RunMeasure> find_measures(std::string_view list, const std::vector<std::string>& columns) {
+  const bool commas = std::any_of(columns.begin(), columns.end(), [](const std::string& column) {
+    return column.find(',') != std::string::npos;
+  });
+  std::vector<RunMeasure> found;
+  const auto take = [&](std::string_view name, bool last) {
+    try {
+      found.push_back(find_measure(std::string(name), columns));
+      return true;
+    } catch (const StudyError&) {
+      if (last) throw;
+      return false;
+    }
+  };
+  while (!list.empty()) {
+    const std::size_t next = std::min(list.find(','), list.size());
+    std::size_t end = commas ? list.size() : next;  // the longest name that is one
+    while (next > 0 && !take(list.substr(0, end), end == next)) end = list.rfind(',', end - 1);
+    list.remove_prefix(std::min((next > 0 ? end : next) + 1, list.size()));
+  }
+  return found;
+}
+
 }  // namespace unfurl

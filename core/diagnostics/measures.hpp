@@ -48,5 +48,7 @@ std::vector<std::string> columns_of(const std::shared_ptr<const Model>& model);
 // not depend on the scene). Largest and smallest values are those of the motion, not only at the ends of
 // steps. Throws StudyError with the nearest name.
 RunMeasure find_measure(const std::string& name, const std::vector<std::string>& columns = {});
+// Of a list with commas between them; columns, too, may have commas in their names. Throws as that.
+std::vector<RunMeasure> find_measures(std::string_view list, const std::vector<std::string>& columns);
 
 }  // namespace unfurl

@@ -288,6 +288,25 @@ TEST_CASE("a measure that is a column by its name says how it is measured") {
   CHECK(find_measure("max:fraction", named).label == "largest fraction");
 }
 
+// Of a name with a comma the longest that is a column; without one a comma ends a name, as ever.
+TEST_CASE("lists of measures take names with commas") {
+  const std::vector<std::string> columns{"t_s", "spring, left.force_N", "hub,torque_N_m", "hub"};
+  const auto names = [&](const char* list) {
+    std::vector<std::string> out;
+    for (const RunMeasure& measure : find_measures(list, columns)) out.push_back(measure.name);
+    return out;
+  };
+  using Names = std::vector<std::string>;
+  CHECK(names("energy,,cpu,") == Names{"energy", "cpu"});
+  CHECK(names("max:spring, left.force_N") == Names{"max:spring, left.force_N"});
+  CHECK(names("energy,min:spring, left.force_N,max:hub,torque_N_m,final:hub,cpu") ==
+        Names{"energy", "min:spring, left.force_N", "max:hub,torque_N_m", "final:hub", "cpu"});
+  CHECK_THROWS_WITH(names("energy,max:spring, right.force_N"), Catch::Contains("no column 'spring'"));
+  CHECK(find_measures("", columns).empty());
+  CHECK(find_measures(",", columns).empty());
+  CHECK_THROWS_WITH(find_measures("max:a,b", {"a"}), Catch::Contains("no measure 'b'"));
+}
+
 // A force by the name of its column is the same force: the ring's largest tension is of its last pose at
 // 200 N, where it is not unique.
 TEST_CASE("extremes of columns are said to be open where the measures of the same forces are") {
