@@ -59,9 +59,13 @@ std::string checksum_of_this_program() {
   return sum;
 }
 
+std::string word_of_scene(const std::string& name) {
+  return (name.starts_with('-') ? "./" : "") + name;
+}
+
 std::vector<std::string> command_of_result(std::vector<std::string> kept, std::size_t scene_at,
                                            const std::string& scene_name, SceneOptions options) {
-  if (scene_at > 0 && !scene_name.empty()) kept.at(scene_at) = scene_name;
+  if (scene_at > 0 && !scene_name.empty()) kept.at(scene_at) = word_of_scene(scene_name);
   for (const char* option : {"-o", "--output", "--frames", "--lease", "--shard", "--merge", "--threads",
                              "--export", "--script", "--jobs", "--picture"})
     kept = without_option(kept, option);

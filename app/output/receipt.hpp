@@ -59,6 +59,8 @@ class ReceiptWriter final : public FileFinisher {
   FileFinisher* before_ = nullptr;
 };
 
+// How a command names the scene of this name: one that begins with '-' is no option.
+std::string word_of_scene(const std::string& name);
 // What files that are written from now on say of their scene, and of the run that they show. Options that
 // change the scene, as --set does, are in its text already or, where that is as it was read, stay in the
 // command.

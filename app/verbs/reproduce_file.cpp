@@ -161,7 +161,7 @@ int reproduce_file(const Arguments& arguments) {
     const fs::path scene = scratch.path / (receipt->name + ".toml");
     write_file_atomically(scene, receipt->scene);
     const std::size_t at = place_of_first_name(words);
-    if (at > 0 && words[at] == receipt->name) words[at] = scene.string();
+    if (at > 0 && words[at] == word_of_scene(receipt->name)) words[at] = scene.string();
   }
   const bool alone = receipt->file.empty();
   const fs::path made = into / (alone ? fs::path(file).filename() : fs::path(receipt->file));

@@ -320,17 +320,21 @@ TEST_CASE("which word of a command is the scene is known by its place") {
   }
   CHECK(command_of_result(commands[1].first, 3, "ring") ==
         std::vector<std::string>{"figure", "--style", "slide", "ring", "energy"});
+  // No option, whatever a file is called.
+  CHECK(command_of_result({"figure", "x/-o.toml", "energy"}, 1, "-o") ==
+        std::vector<std::string>{"figure", "./-o", "energy"});
 }
 
 TEST_CASE("a scene that is called as another word of the command is made again") {
   const ScratchDirectory dir;
   const std::string pendulum = file_text(std::string(UNFURL_ROOT) + "/assets/scenes/pendulum.toml");
   const std::string figure = dir.write("figure.toml", pendulum), slide = dir.write("slide.toml", pendulum),
-                    energy = dir.write("energy.toml", pendulum);
+                    energy = dir.write("energy.toml", pendulum), dpi = dir.write("--dpi.toml", pendulum);
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"figure", figure, "energy"},
         std::vector<std::string>{"figure", "--style", "slide", slide, "energy"},
-        std::vector<std::string>{"figure", "--style=slide", energy, "energy"}}) {
+        std::vector<std::string>{"figure", "--style=slide", energy, "energy"},
+        std::vector<std::string>{"figure", dpi, "energy"}}) {
     std::vector<std::string> asked = words;
     asked.insert(asked.end(), {"-o", dir / "a.svg", "--set", "solver.end_time=0.2", "--quiet"});
     REQUIRE(run_program(asked).code == 0);
