@@ -263,7 +263,7 @@ int cmd_margin(const Arguments& arguments) {
   if (arguments.study.stuck) hinges = stuck_hinges(model, scene.solver, margin, few);
   if (arguments.json)
     std::cout << margin_json(scene, margin, hinges, arguments.study.stuck).dump(2) << "\n";
-  else
+  else if (!arguments.quiet)
     print_margin(scene, margin, hinges, arguments.study.stuck);
   if (arguments.output.empty()) return exit_ok;
   std::string asked = "Margins";

@@ -84,7 +84,7 @@ int cmd_modes(const Arguments& arguments) {
   const Vibration vibration = vibration_of(pose);
   if (arguments.json)
     std::cout << modes_json(scene, vibration).dump(2) << "\n";
-  else
+  else if (!arguments.quiet)
     print_modes(scene, vibration, any_elastic(structure));
   if (arguments.output.empty()) return pose.code;
   StudySession session(arguments, "modes",

@@ -29,7 +29,7 @@ int reproduce_validation(const Arguments& arguments) {
       markdown_text(table) + "\nWhat a scene cannot say yet:\n\n" + markdown_text(not_expressible_table());
   session.write("validation.csv", csv_text(table));
   session.write("validation.md", text);
-  std::cout << text;
+  if (!arguments.quiet) std::cout << text;
   bool all = true;
   for (const ValidationRow& row : rows) {
     all = all && row.holds();

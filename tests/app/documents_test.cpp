@@ -179,7 +179,7 @@ TEST_CASE("docs/scene.md is what the program prints") {
 
 TEST_CASE("docs/validation.md has every benchmark that the program prints") {
   const ScratchDirectory folder;
-  const ProgramResult r = run_program({"reproduce", "--validation", "-o", folder / "out", "--quiet"});
+  const ProgramResult r = run_program({"reproduce", "--validation", "-o", folder / "out"});
   INFO(r.err);
   CHECK(r.code == 0);
   const std::string page = file_text(UNFURL_ROOT "/docs/validation.md");
