@@ -59,9 +59,12 @@ int cmd_render(const Arguments& arguments) {
   std::optional<FinishedWork> keeping(std::in_place);  // of a motion that is interrupted too
   Simulation run = simulate_scene(scene, std::move(model), arguments);
   const Diagnostics diagnostics = judge_run(run);
-  if (!folder.holds_this()) FilmFolder::clear(output.written());
-  folder.claim();
-  lock.share();
+  const bool another = !folder.holds_this();  // whose results stay until the new ones are whole
+  const auto claim = [&] {
+    folder.claim();
+    lock.share();
+  };
+  if (!another) claim();
   const Scene shown = fitted(scene, run);
   folder.fit(shown);
   FrameMemory memory;
@@ -75,7 +78,10 @@ int cmd_render(const Arguments& arguments) {
   }
   RunAhead beside(arguments.threads);
   const std::string summary =
-      write_data(directory, scene, run, diagnostics, as_typed(arguments.words), beside);
+      write_data(directory, scene, run, diagnostics, as_typed(arguments.words), beside, true, [&] {
+        if (another) FilmFolder::clear(output.written());
+      });
+  if (another) claim();
   write_exports(formats, directory, scene, run, diagnostics, arguments);
   keeping.reset();
   report_run(run, diagnostics, arguments);

@@ -54,7 +54,7 @@ int cmd_stress(const Arguments& arguments) {
   {
     const StudyHooks hooks = session.hooks();
     Journal journal(team ? team->journal() : session.journal(), stress_columns(), stress_key_columns,
-                    stress_number_columns(), is_stress_cell);
+                    stress_number_columns(), is_stress_cell, session.room_for_first());
     found = alone_or_joined(
         team.get(), arguments, journal, hooks,
         [&](Journal& all, const StudyHooks& own) { return run_stress(plan, all, own); },

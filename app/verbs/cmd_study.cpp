@@ -120,7 +120,7 @@ int cmd_study(const Arguments& arguments) {
   std::optional<Study> found;
   {
     Journal journal(team ? team->journal() : session.journal(), study_columns(), study_key_columns,
-                    study_number_columns(), is_study_point);
+                    study_number_columns(), is_study_point, session.room_for_first());
     found = alone_or_joined(
         team.get(), arguments, journal, hooks,
         [&](Journal& all, const StudyHooks& own) { return run_study(plan, all, own); },

@@ -231,7 +231,7 @@ std::string cure(const SweepPlan& plan, const Sweep& sweep, const Arguments& arg
 }
 
 // None: another worker writes the results.
-std::optional<Sweep> compute(const SweepPlan& plan, const StudySession& session, const StudyHooks& hooks,
+std::optional<Sweep> compute(const SweepPlan& plan, StudySession& session, const StudyHooks& hooks,
                              const Arguments& arguments, const std::string& identity, Team* team) {
   const auto finished = [&](const auto& row) { return plan.is_finished(row); };
   try {
@@ -240,7 +240,7 @@ std::optional<Sweep> compute(const SweepPlan& plan, const StudySession& session,
     if (!arguments.study.merge.empty())
       return merge_sweep(plan, journals_in(arguments.study.merge, identity));
     Journal journal(team ? team->journal() : session.journal(), plan.columns(), plan.axes.size(),
-                    plan.number_columns(), finished);
+                    plan.number_columns(), finished, session.room_for_first());
     return alone_or_joined(
         team, arguments, journal, hooks,
         [&](Journal& all, const StudyHooks& own) { return run_sweep(plan, all, own); },

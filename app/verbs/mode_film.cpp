@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "app/verbs/mode_film.hpp"
 
+#include <array>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <optional>
 
@@ -105,10 +107,19 @@ class Swing {
   double reach_ = 0;
 };
 
-void write_modes(const std::filesystem::path& directory, const Scene& scene, const ModalPose& pose,
-                 const Vibration& vibration, GlContext& context, const FigureOptions& style) {
-  write_file_atomically(directory / "scene.toml", scene_text(scene));
-  write_file_atomically(directory / "modes.csv", csv_text(modes_table(vibration)));
+// make_room: called when the tables are on the disk, before they have their names.
+void write_mode_tables(const std::filesystem::path& directory, const Scene& scene, const Vibration& vibration,
+                       const std::function<void()>& make_room) {
+  PendingFile text(directory / "scene.toml"), modes(directory / "modes.csv");
+  text.write(scene_text(scene));
+  modes.write(csv_text(modes_table(vibration)));
+  for (PendingFile* file : {&text, &modes}) file->complete();
+  make_room();
+  commit_together(std::array{&text, &modes});
+}
+
+void write_figure_of_modes(const std::filesystem::path& directory, const Scene& scene, const ModalPose& pose,
+                           const Vibration& vibration, GlContext& context, const FigureOptions& style) {
   const Structure& structure = pose.model->structure;
   VectorXd q(pose.model->system.coordinates());
   pose.model->system.expand(pose.state.z, q);
@@ -166,13 +177,15 @@ int render_mode(const Arguments& arguments) {
                     "holds frames of another film or other results; use --force to start "
                     "over, or another -o");
   const auto context = make_offscreen_context({arguments.threads, arguments.gpu});
-  if (!folder.holds_this()) FilmFolder::clear(output.written());
+  write_mode_tables(output.path(), scene, vibration, [&] {
+    if (!folder.holds_this()) FilmFolder::clear(output.written());
+  });
   folder.claim();
   output.lock().share();
   const Simulation run = swinging(pose, mode, shown.render);
   const Scene framed = fitted(shown, run);
   folder.fit(framed);
-  write_modes(output.path(), scene, pose, vibration, *context, style);
+  write_figure_of_modes(output.path(), scene, pose, vibration, *context, style);
   FrameMemory memory;
   if (arguments.encode_only)
     require_all_frames(folder, framed, run, arguments);

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <iostream>
+#include <optional>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include "app/output/interrupt.hpp"
 #include "app/output/receipt.hpp"
@@ -103,12 +105,13 @@ StudySession::StudySession(const Arguments& arguments, std::string task, const s
               : journal.find('_') != std::string::npos ? DirectoryLock::Use::shareable
                                                        : DirectoryLock::Use::alone),
       journal_(std::move(journal)),
+      identity_(identity),
       progress_(std::move(task), arguments.quiet),
       writer_(figure_options(arguments)) {
-  begin(identity);
+  begin();
 }
 
-void StudySession::begin(const std::string& identity) {
+void StudySession::begin() {
   std::error_code error;
   if (shard()) Journal::require_free(journal());
   if (arguments_.force && arguments_.join)
@@ -117,21 +120,50 @@ void StudySession::begin(const std::string& identity) {
     throw FileError(directory(),
                     "is on a file system without locks, so --force could remove what another "
                     "unfurl is writing; use another directory");
-  if (arguments_.force && output_.lock().alone()) begin_anew(identity);
-  if (!identity.empty()) output_.require_scene(identity, arguments_.force);
   output_.require_files({"scene.toml", journal_.c_str()});
+  in_the_way_ = arguments_.force && output_.lock().alone();
+  if (shard()) make_room();
+  if (in_the_way_) return;
+  if (!identity_.empty()) output_.require_scene(identity_, arguments_.force);
   const bool begun = arguments_.join ? fs::exists(directory() / "scene.toml", error)
                                      : !journals_like(journal_, directory()).empty();
-  if (begun) require_identity(directory(), identity, "use another directory, or --force to begin anew");
-  if (!identity.empty()) write_file_atomically(directory() / "scene.toml", identity);
+  if (begun) require_identity(directory(), identity_, "use another directory, or --force to begin anew");
+  if (!identity_.empty()) write_file_atomically(directory() / "scene.toml", identity_);
   if (shard()) output_.lock().share();
+}
+
+// A first result is on the disk, or others are at work.
+void StudySession::make_room() {
+  if (!std::exchange(in_the_way_, false)) return;
+  if (shard()) return begin_anew();
+  std::optional<PendingFile> scene;
+  if (!identity_.empty()) {
+    scene.emplace(directory() / "scene.toml").write(identity_);
+    scene->complete();
+  }
+  begin_anew();
+  if (scene) {
+    output_.require_scene(identity_, true);
+    scene->commit();
+  }
+  if (!grows_.empty()) grows(grows_);
+}
+
+std::function<void()> StudySession::room_for_first() {
+  if (!in_the_way_) return nullptr;
+  return [this] { make_room(); };
+}
+
+void StudySession::grows(const fs::path& file) {
+  grows_ = file;
+  if (!in_the_way_) output_.written().grows(file.lexically_relative(directory()).generic_string());
 }
 
 // Another study's results go, those of this one too; but a shard leaves alone what other shards of the same
 // sweep have finished. What is called as a journal and is not ours is put aside.
-void StudySession::begin_anew(const std::string& identity) {
+void StudySession::begin_anew() {
   const TextFile scene = read_text_file((directory() / "scene.toml").string());
-  if (shard() && scene.error.empty() && scene.text == identity) {
+  if (shard() && scene.error.empty() && scene.text == identity_) {
     output_.written().remove(journal_);
     std::error_code error;
     if (fs::exists(journal(), error)) output_.written().keep_aside(journal_);
@@ -153,15 +185,23 @@ StudyHooks StudySession::hooks() {
 
 void StudySession::require_asked(Journal& nowhere,
                                  const std::function<bool(const Journal::Row&)>& asked) const {
+  if (in_the_way_) return;
   nowhere.take_in(journal());
   nowhere.require_asked(asked, directory(), "ask for them, too, or use another -o, or --force to begin anew");
 }
 
-void StudySession::write(const std::string& name, const std::string& text) const {
-  write_file_atomically(directory() / name, text);
+void StudySession::write(const std::string& name, const std::string& text) {
+  if (in_the_way_) throw_if_interrupted();  // a study that was ended before its first result has none
+  PendingFile file(directory() / name);
+  file.write(text);
+  file.complete();
+  make_room();
+  file.commit();
 }
 
 std::string StudySession::write(const Figure& figure) {
+  if (in_the_way_) throw_if_interrupted();
+  make_room();
   const std::string stem = "figures/" + figure.name;
   std::error_code error;
   fs::create_directories(directory() / "figures", error);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,37 +44,41 @@ void require_identity(const std::filesystem::path& directory, const std::string&
 class StudySession {
  public:
   // `identity` is written to DIR/scene.toml: what the results belong to. Results of another identity are
-  // refused; with --force they are removed first. `journal` is the file that holds finished results; a
-  // journal of one shard has others beside it, which may be at work in other processes.
+  // refused; with --force they stay until a first new result is whole and are removed then, at once only
+  // beside other shards. `journal` is the file that holds finished results; a journal of one shard has others
+  // beside it, which may be at work in other processes.
   StudySession(const Arguments& arguments, std::string task, const std::string& identity,
                std::string journal);
 
   // A file in the directory has results added to it as they come.
-  void grows(const std::filesystem::path& file) {
-    output_.written().grows(file.lexically_relative(directory()).generic_string());
-  }
+  void grows(const std::filesystem::path& file);
 
   StudyHooks hooks();
   const std::filesystem::path& directory() const { return output_.path(); }
   std::filesystem::path journal() const { return directory() / journal_; }
+  // For the journal: what takes earlier results away, where that is to be done.
+  std::function<void()> room_for_first();
 
   // Throws FileError where the journal has results that `asked` does not take; `nowhere` is an empty one of
   // its kind.
   void require_asked(Journal& nowhere, const std::function<bool(const Journal::Row&)>& asked) const;
 
-  void write(const std::string& name, const std::string& text) const;  // DIR/name
+  void write(const std::string& name, const std::string& text);  // DIR/name
   // DIR/figures/NAME.svg, .pdf and .png, its numbers and caption, as --style and --dpi say; returns
   // "figures/NAME.png".
   std::string write(const Figure& figure);
 
  private:
   const Arguments& arguments_;
-  void begin(const std::string& identity);
-  void begin_anew(const std::string& identity);
+  void begin();
+  void begin_anew();
+  void make_room();
   bool shard() const { return journal_.find('_') != std::string::npos; }
 
   OwnDirectory output_;
-  std::string journal_;
+  std::string journal_, identity_;
+  std::filesystem::path grows_;  // is told of when there is room
+  bool in_the_way_ = false;      // earlier results are still there
   Progress progress_;
   FigureWriter writer_;
 };

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
 #include "core/export/atomic_file.hpp"
 #include "core/scene/csv_table.hpp"
@@ -47,18 +48,29 @@ class LockOfFile {
 }  // namespace
 
 Journal::Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys,
-                 std::vector<std::size_t> numbers, std::function<bool(const Row&)> finished)
+                 std::vector<std::size_t> numbers, std::function<bool(const Row&)> finished,
+                 std::function<void()> make_room)
     : path_(std::move(path)),
       columns_(std::move(columns)),
       keys_(keys),
       numbers_(std::move(numbers)),
-      finished_(std::move(finished)) {
+      finished_(std::move(finished)),
+      make_room_(std::move(make_room)) {
   if (path_.empty()) return;
   const LockOfFile earlier(path_);
+  if (make_room_) return;
   take_in(path_);
-  std::string text = csv_line(columns_);
-  for (const auto& [key, row] : rows_) text += csv_line(row);
-  write_file_atomically(path_, text);  // without what was torn
+  begin_file();  // without what was torn
+}
+
+// The file, with the results that are known.
+void Journal::begin_file() {
+  PendingFile file(path_);
+  file.write(csv_line(columns_));
+  for (const auto& [key, row] : rows_) file.write(csv_line(row));
+  file.complete();
+  if (make_room_) std::exchange(make_room_, nullptr)();
+  file.commit();
   file_ = std::fopen(path_.c_str(), "abe");
   if (!file_) throw FileError(path_, errno);
   try {
@@ -137,6 +149,7 @@ const std::vector<std::string>* Journal::find(const std::vector<std::string>& ke
 }
 
 void Journal::append(std::vector<std::string> row) {
+  const bool first = make_room_ != nullptr;
   if (file_) {
     const std::string line = csv_line(row);
     if (std::fwrite(line.data(), 1, line.size(), file_) != line.size() || std::fflush(file_) != 0)
@@ -144,6 +157,7 @@ void Journal::append(std::vector<std::string> row) {
   }
   std::vector<std::string> key(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_));
   rows_[std::move(key)] = std::move(row);
+  if (first) begin_file();
 }
 
 }  // namespace unfurl

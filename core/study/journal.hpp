@@ -26,8 +26,11 @@ class Journal {
   // Reads what is there; a row whose cells in the columns `numbers` (indices) are not all numbers, or that
   // `finished` does not take, is no result. Throws JournalMismatch where its columns are others, FileError,
   // also where another journal writes to the file: one of them would lose what it has computed.
+  // With `make_room` what is there is not read and stays until a first new result is on the disk under
+  // another name; make_room() then takes it away.
   Journal(std::filesystem::path path, std::vector<std::string> columns, std::size_t keys,
-          std::vector<std::size_t> numbers = {}, std::function<bool(const Row&)> finished = {});
+          std::vector<std::size_t> numbers = {}, std::function<bool(const Row&)> finished = {},
+          std::function<void()> make_room = {});
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
@@ -54,12 +57,14 @@ class Journal {
 
  private:
   bool is_result(const Row& row) const;
+  void begin_file();
 
   std::filesystem::path path_;
   std::vector<std::string> columns_;
   std::size_t keys_;
   std::vector<std::size_t> numbers_;
   std::function<bool(const Row&)> finished_;
+  std::function<void()> make_room_;
   struct Damage {
     std::size_t lines = 0, first = 0;
   };
