@@ -67,14 +67,18 @@ int study_models(const Arguments& arguments) {
   const SceneSource source = scene_source(find_scene(arguments.names.front()), arguments.overrides);
   const Scene scene = source.read();
   const InterruptGuard guard;
-  StudySession session(arguments, "measuring", scene_text(scene), "models.csv");
+  const int repeats = arguments.study.repeats > 0 ? arguments.study.repeats : 5;
+  const std::string asked = "A comparison of models with " + std::to_string(repeats) + " repeats";
+  StudySession session(arguments, "measuring", study_identity(asked, scene), "models.csv");
+  session.grows(session.journal());
   std::vector<MeasuredModel> models;
   try {
-    models =
-        compare_models(source, arguments.study.repeats > 0 ? arguments.study.repeats : 5, session.hooks());
+    Journal journal(session.journal(), models_columns(), 1, models_number_columns(), is_measured_model,
+                    session.room_for_first());
+    warn_of_damage(journal);
+    models = compare_models(source, repeats, journal, session.hooks());
   } catch (const Cancelled&) {
-    std::cerr << "unfurl: interrupted; --models keeps nothing until all is measured\n";
-    return exit_interrupted;
+    return finish(false, arguments, "");
   }
   session.write("models.csv", csv_text(models_table(models)));
   Report report{"What each modelling choice costs and changes: " + scene.title};

@@ -187,10 +187,12 @@ double tip_difference(const Trajectory& a, const Trajectory& b) {
   return (a.positions_at(t).segment<3>(tip) - b.positions_at(t).segment<3>(there)).norm();
 }
 
+constexpr const char* mesh_name = "single precision of the display's mesh";
+
 // What drawing sees of a run: node positions in single precision. It costs no step anything.
 MeasuredModel display_mesh(const Trajectory& run) {
   MeasuredModel m;
-  m.choice.name = "single precision of the display's mesh";
+  m.choice.name = mesh_name;
   m.tip_difference = nan;
   m.cpu_median = m.cpu_min = m.cpu_max = m.memory = m.deployment_time = nan;
   m.peak_force = m.cpu_forces = nan;
@@ -300,16 +302,70 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
   return out;
 }
 
-std::vector<MeasuredModel> compare_models(const SceneSource& asked, int repeats, const StudyHooks& hooks) {
+namespace {
+
+std::vector<std::string> row_of_model(const MeasuredModel& m) {
+  std::vector<std::string> row{m.choice.name, m.outcome, std::to_string(m.solved_coordinates),
+                               std::to_string(m.constraints)};
+  for (const double x : {m.cpu_median, m.cpu_min, m.cpu_max, m.memory, m.difference, m.deployment_time})
+    row.push_back(exact_number(x));
+  row.push_back(exact_number(m.peak_force));
+  row.push_back(m.peak_unique ? "1" : "0");
+  row.push_back(exact_number(m.cpu_forces));
+  row.push_back(exact_number(m.tip_difference));
+  return row;
+}
+
+MeasuredModel model_of(const std::vector<std::string>& row, const ModelChoice& choice) {
+  MeasuredModel m{choice, row[1], "", static_cast<Index>(number_of(row[2])),
+                  static_cast<Index>(number_of(row[3]))};
+  std::size_t cell = 4;
+  for (double* x :
+       {&m.cpu_median, &m.cpu_min, &m.cpu_max, &m.memory, &m.difference, &m.deployment_time, &m.peak_force})
+    *x = number_of(row[cell++]);
+  m.peak_unique = row[cell++] == "1";
+  m.cpu_forces = number_of(row[cell++]);
+  m.tip_difference = number_of(row[cell]);
+  return m;
+}
+
+// Of two choices of one name none is known. One that failed is tried again: its row has no reason.
+std::optional<MeasuredModel> known_model(const Journal& journal, const std::vector<ModelChoice>& choices,
+                                         const ModelChoice& choice) {
+  const auto* row = journal.find({choice.name});
+  if (!row || (*row)[1] == "failed" || std::ranges::count(choices, choice.name, &ModelChoice::name) > 1)
+    return std::nullopt;
+  return model_of(*row, choice);
+}
+
+}  // namespace
+
+std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats, const StudyHooks& hooks) {
+  Journal nowhere({}, models_columns(), 1);
+  return compare_models(source, repeats, nowhere, hooks);
+}
+
+std::vector<MeasuredModel> compare_models(const SceneSource& asked, int repeats, Journal& journal,
+                                          const StudyHooks& hooks) {
   const SceneSource source = without_files(asked);
   std::vector<MeasuredModel> out;
   std::optional<Simulation> base;
-  const auto choices = model_choices(source);
+  auto choices = model_choices(source);
+  const auto measured_already = [&](const ModelChoice& choice) {
+    return known_model(journal, choices, choice).has_value();
+  };
+  const ModelChoice mesh{mesh_name, {}};
+  const bool all = std::ranges::all_of(choices, measured_already) && measured_already(mesh);
   for (const ModelChoice& choice : choices) {
     hooks.tell(static_cast<double>(out.size()) / static_cast<double>(choices.size()));
     MeasuredModel m;
     m.choice = choice;
     m.difference = m.tip_difference = m.deployment_time = m.peak_force = m.cpu_forces = nan;
+    if (auto known = known_model(journal, choices, choice)) {
+      if (!all && !base) base = measure(source, 1, hooks, m);  // which others are compared with
+      out.push_back(*std::move(known));
+      continue;
+    }
     try {
       Simulation run = measure(source, repeats, hooks, m);
       if (!base) {
@@ -327,29 +383,45 @@ std::vector<MeasuredModel> compare_models(const SceneSource& asked, int repeats,
       m.outcome = std::string("not possible: ") + refused.what();
       m.solved_coordinates = 0;
     }
+    if (m.outcome != "failed") journal.append(row_of_model(m));
     out.push_back(std::move(m));
   }
-  if (base && base->status != RunStatus::failed) out.push_back(display_mesh(base->trajectory));
+  if (all) {
+    out.push_back(*known_model(journal, choices, mesh));
+  } else if (base && base->status != RunStatus::failed) {
+    out.push_back(display_mesh(base->trajectory));
+    journal.append(row_of_model(out.back()));
+  }
   hooks.tell(1);
   return out;
 }
 
+std::vector<std::string> models_columns() {
+  return {"model",        "outcome",           "solved_coordinates", "constraints",
+          "cpu_median_s", "cpu_min_s",         "cpu_max_s",          "memory_bytes",
+          "difference_m", "deployment_time_s", "peak_rod_force_N",   "peak_unique",
+          "cpu_forces_s", "tip_difference_m"};
+}
+
+std::vector<std::size_t> models_number_columns() {
+  std::vector<std::size_t> numbers;
+  for (std::size_t c = 2; c < models_columns().size(); ++c) numbers.push_back(c);
+  return numbers;
+}
+
+bool is_measured_model(const std::vector<std::string>& row) {
+  const auto counts = [](const std::string& cell) {
+    const double x = number_of(cell);
+    return x >= 0 && x < 1e9 && x == std::floor(x);
+  };
+  return counts(row[2]) && counts(row[3]) && (row[11] == "0" || row[11] == "1") &&
+         std::ranges::none_of(row.begin() + 4, row.begin() + 8,
+                              [](const std::string& cell) { return number_of(cell) < 0; });
+}
+
 Table models_table(const std::vector<MeasuredModel>& models) {
-  Table table{{"model", "outcome", "solved_coordinates", "constraints", "cpu_median_s", "cpu_min_s",
-               "cpu_max_s", "memory_bytes", "difference_m", "deployment_time_s", "peak_rod_force_N",
-               "peak_unique", "cpu_forces_s", "tip_difference_m"},
-              {}};
-  for (const MeasuredModel& m : models) {
-    std::vector<std::string> row{m.choice.name, m.outcome, std::to_string(m.solved_coordinates),
-                                 std::to_string(m.constraints)};
-    for (const double x : {m.cpu_median, m.cpu_min, m.cpu_max, m.memory, m.difference, m.deployment_time})
-      row.push_back(exact_number(x));
-    row.push_back(exact_number(m.peak_force));
-    row.push_back(m.peak_unique ? "1" : "0");
-    row.push_back(exact_number(m.cpu_forces));
-    row.push_back(exact_number(m.tip_difference));
-    table.rows.push_back(std::move(row));
-  }
+  Table table{models_columns(), {}};
+  for (const MeasuredModel& m : models) table.rows.push_back(row_of_model(m));
   return table;
 }
 

@@ -2,6 +2,7 @@
 // What each modelling choice of a scene costs and changes.
 #pragma once
 
+#include "core/study/journal.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/scene_variation.hpp"
 #include "core/study/table.hpp"
@@ -37,7 +38,15 @@ struct MeasuredModel {
 // One after another, timed alone; last, what the single precision of the display changes. Throws Cancelled;
 // SceneError where the scene itself is wrong.
 std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats, const StudyHooks& hooks);
+// The same; what the journal has is not measured again, what is measured and has an answer goes into it.
+std::vector<MeasuredModel> compare_models(const SceneSource& source, int repeats, Journal& journal,
+                                          const StudyHooks& hooks);
 
+// Of the journal: its columns, of which the first is its key, those that are numbers, and whether a row of it
+// can be of a measured model.
+std::vector<std::string> models_columns();
+std::vector<std::size_t> models_number_columns();
+bool is_measured_model(const std::vector<std::string>& row);
 Table models_table(const std::vector<MeasuredModel>& models);    // exact
 Table models_summary(const std::vector<MeasuredModel>& models);  // for a person, with ratios to the first
 

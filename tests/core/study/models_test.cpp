@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
@@ -211,6 +214,42 @@ TEST_CASE("a model without some of the nodes is compared by those that it has") 
       CHECK(m.difference > 0);
       CHECK(m.difference < 1e-3);
     }
+}
+
+// Rows that were kept are taken as they are: their times tell. The rest is compared with the same first run,
+// so that differences are those of a comparison in one go, to the last bit.
+TEST_CASE("a comparison of models goes on from the rows that are kept") {
+  const SceneSource source{find_scene("four_bar"), {"solver.end_time=0.2"}};
+  const auto file = std::filesystem::temp_directory_path() / "unfurl_models_test.csv";
+  std::filesystem::remove(file);
+  const auto compared = [&](const StudyHooks& hooks) {
+    Journal journal(file, models_columns(), 1, models_number_columns(), is_measured_model);
+    return models_table(compare_models(source, 1, journal, hooks)).rows;
+  };
+  StudyHooks until_some;
+  until_some.cancelled = [&] {  // when three rows are there, below their heading
+    std::ifstream in(file);
+    return std::count(std::istreambuf_iterator<char>(in), {}, '\n') >= 4;
+  };
+  CHECK_THROWS_AS(compared(until_some), Cancelled);
+  Journal kept(file, models_columns(), 1, models_number_columns(), is_measured_model);
+  REQUIRE(kept.size() == 3);
+  const auto whole = models_table(compare_models(source, 1, {})).rows;
+  const auto all = [&] {
+    Journal more({}, models_columns(), 1);
+    more.take_in(file);
+    return models_table(compare_models(source, 1, more, {})).rows;
+  }();
+  REQUIRE(all.size() == whole.size());
+  const std::size_t difference = 8, tip = 13;
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    INFO(all[r][0]);
+    CHECK(all[r][0] == whole[r][0]);
+    CHECK(all[r][difference] == whole[r][difference]);
+    CHECK(all[r][tip] == whole[r][tip]);
+    if (const auto* row = kept.find({all[r][0]})) CHECK(*row == all[r]);
+  }
+  std::filesystem::remove(file);
 }
 
 }  // namespace models_test
