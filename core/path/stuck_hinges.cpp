@@ -21,6 +21,7 @@ constexpr double loose_steps = 1e-9;   // of motions that only tell whether they
 // A jam makes a motion late, and that is no stall: it is followed for so many end times. One that still
 // creeps then has stalled.
 constexpr double patience = 1e9;
+constexpr double no_torque = 1e-13;  // of the size of what acts: a torque that is less is none
 constexpr double unbounded_torque = std::numeric_limits<double>::infinity();
 constexpr int most_doublings = 200;  // of a first guess, beyond which nothing is said to stall it
 
@@ -58,6 +59,11 @@ class StuckMaker {
     for (const Some& some : all) out.push_back(stuck(some));
     if (!by_pose_)
       for (std::size_t i = 0; i < all.size(); ++i) stall_by_motion(all[i], out[i]);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double none = no_torque * first_guess(all[i]);
+      for (double* torque : {&out[i].static_torque, &out[i].stall_torque})
+        if (*torque <= none && std::isfinite(none)) *torque = 0;
+    }
     return out;
   }
 
@@ -283,7 +289,8 @@ class StuckMaker {
     }
     stalls_at = motion_.way();
     if (doublings == most_doublings) high = low = unbounded_torque;
-    while (low < unbounded_torque && high - low > torque_found * high) {
+    const double none = no_torque * first_guess(some);
+    while (low < unbounded_torque && high - low > torque_found * high && high > none) {
       const double middle = 0.5 * (low + high);
       if (arrives(middle)) {
         low = middle;

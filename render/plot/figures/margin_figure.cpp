@@ -104,12 +104,12 @@ Figure margin_figure(const Margin& margin, const std::string& title) {
     figure.panels[0].x.shown = true;
   }
   const MarginReach& last = margin.motion.back();
+  const auto place = [&](double fold_angle, double s) {
+    return plot::format_number(along(margin, fold_angle, s), 4) + (folds ? " deg" : " m kg^1/2");
+  };
   figure.caption = "Least static margin " + words(margin.worst.margin) + " at " +
-                   plot::format_number(along(margin, margin.worst.fold_angle, margin.worst.s), 4) +
-                   (folds ? " deg" : "") + ", least dynamic margin " + words(margin.dynamic_min) + "; " +
-                   told_end(margin, plot::format_number(along(margin, last.fold_angle, last.s), 4) +
-                                        (folds ? " deg" : "")) +
-                   ".";
+                   place(margin.worst.fold_angle, margin.worst.s) + ", least dynamic margin " +
+                   words(margin.dynamic_min) + "; " + told_end(margin, place(last.fold_angle, last.s)) + ".";
   if (!any) figure.caption += " No margin is as low as 20, and none is drawn.";
   if (!high.empty()) figure.caption += " No " + high + " margin is as low as 20, and none is drawn.";
   for (const MarginSource& source : margin.sources)

@@ -265,6 +265,26 @@ TEST_CASE("a jam stalls the motion, and holds it at rest, where it is least betw
   }
 }
 
+// A spring from A pushes B until it has its free length, just where the way ends: nothing pushes there, and
+// any torque holds what comes to rest. What is left of its force there is 1e-16 of 60 N/m times 0.44 m.
+TEST_CASE("no torque at all is 0 and not what rounding leaves") {
+  const SliderCrank crank;
+  const auto hinges = stuck_in(read_scene_text(
+      crank.scene(
+          "[[forces]]\nkind = \"spring\"\nnodes = [\"A\", \"B\"]\nstiffness = 60\nfree_length = 1.38\n",
+          deployed + "[solver]\nend_time = 20\n"),
+      "slack.toml"));
+  REQUIRE(hinges.size() == 1);
+  CHECK(hinges[0].static_torque == 0.0);
+  const auto stretch = [](double p) { return 1.38 - SliderCrank::x(p); };
+  const double from = stretch(SliderCrank::start);
+  const auto stalled_at = [&](double p) {
+    return 30 * (from * from - stretch(p) * stretch(p)) /
+           (SliderCrank::angle(SliderCrank::start) - SliderCrank::angle(p));
+  };
+  CHECK(hinges[0].stall_torque == Approx(crank.least(stalled_at).first).epsilon(1e-9));
+}
+
 // With the same force all the time as by energy; with one that falls to 1.2 N and rises again as in runs.
 TEST_CASE("a jam with loads over time stalls the motion where it rests, not where it is late") {
   const auto text = [&](const SliderCrank& crank, const std::string& values, const std::string& end,

@@ -9,10 +9,10 @@ namespace unfurl::margin_caption_test {
 
 namespace {
 
-std::string caption(MarginEnd end, double dynamic_min) {
+std::string caption(MarginEnd end, double dynamic_min, const char* unit = "N m") {
   Margin margin;
   margin.sources = {{"loads", "load"}};
-  margin.unit = "N m";
+  margin.unit = unit;
   margin.points = {{0.0, 1.2, VectorXd::Constant(1, 2.0), 0.7}, {0.5, 0.6, VectorXd::Constant(1, 3.0), 0.4}};
   margin.worst = margin.points[1];
   margin.motion = {{0.0, 0.0, 1.2, 0.1, 0.2, 0.1}, {0.25, 0.3, 0.9 * radians_per_degree, 0.2, 0.3, 0.1}};
@@ -36,6 +36,10 @@ TEST_CASE("the caption of a margin says how the motion ends, and none where ther
   CHECK_THAT(caption(MarginEnd::stopped, 0.25),
              Catch::Contains("margin 0.25; the motion ends at 0.9 deg, on the end stop bar."));
   CHECK_THAT(caption(MarginEnd::time, 0.25), Catch::Contains("at 0.9 deg when its time is up."));
+  // Without a fold angle both places are on the way along the path: 0.5 and 0.25.
+  CHECK_THAT(caption(MarginEnd::time, 0.25, "N/kg^1/2"),
+             Catch::Contains("0.4 at 0.5 m kg^1/2, least") &&
+                 Catch::Contains("at 0.25 m kg^1/2 when its time is up."));
 }
 
 TEST_CASE("where no margin can be drawn there is no axis of margins", "[figure]") {
