@@ -24,13 +24,16 @@ Vec3f f(const Vec3& v) {
   return v.cast<float>();
 }
 
-// Rods that stand for what pulls only are drawn as what they stand for: a word of the group's name says so.
+// Rods that stand for what pulls only are drawn as what they stand for: a word of the group's name, or the
+// end of one ("frontnet"; of "properties" it means nothing), says so.
 bool is_cable(const std::string& group) {
-  constexpr std::string_view words[] = {"cable", "tie", "cord", "net"};
+  constexpr std::string_view ends[] = {"cable", "cord", "net"};
+  constexpr std::string_view others[] = {"magnet", "cabinet", "planet", "bonnet", "record"};
   std::string word;
   const auto is_one = [&] {
     if (word.ends_with('s')) word.pop_back();
-    return std::ranges::find(words, word) != std::end(words);
+    const auto ends_as = [&](std::string_view end) { return word.ends_with(end); };
+    return word == "tie" || (std::ranges::any_of(ends, ends_as) && std::ranges::none_of(others, ends_as));
   };
   for (const char c : group) {
     if (std::isalpha(static_cast<unsigned char>(c)) != 0) {

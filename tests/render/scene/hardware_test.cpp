@@ -288,9 +288,10 @@ TEST_CASE("groups with a word for what only pulls are thin, and no other is") {
     return FrameBuilder(simulation.trajectory, style).build(0).tubes.at(0).radius;
   };
   const float own = std::sqrt(1e-4f / static_cast<float>(pi));
-  for (const char* group : {"bar", "accordion", "magnet boom", "properties", "kinetic"})
+  for (const char* group : {"bar", "accordion", "magnet boom", "properties", "kinetic", "Electromagnets"})
     CHECK(radius_of(group) == Approx(own));
-  for (const char* group : {"cable", "front ties", "Net 2", "net_back"}) CHECK(radius_of(group) < 0.5f * own);
+  for (const char* group : {"cable", "front ties", "Net 2", "net_back", "frontnet", "SteelCables 3"})
+    CHECK(radius_of(group) < 0.5f * own);
 }
 
 TEST_CASE("a rod that turns about a held node in a plane has a lug there, its pin across the plane") {
