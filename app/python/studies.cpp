@@ -133,17 +133,18 @@ void warn(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-py::dict sweep_scene(const SceneSource& given,
-                     const std::vector<std::pair<std::string, std::vector<double>>>& vary,
+py::dict sweep_scene(const SceneSource& given, const std::vector<std::pair<std::string, AxisValues>>& vary,
                      const std::vector<std::string>& measures, int threads, const std::string& folder) {
   const SceneSource source = as_now(given);
   SweepPlan plan{source, {}, {}, {}};
   for (const auto& [key, values] : vary) {
     SweepAxis axis;
     axis.key = key;
-    for (const double x : values) {
-      axis.values.push_back(exact_number(x));
-      axis.numbers.push_back(x);
+    if (const auto* texts = std::get_if<std::vector<std::string>>(&values)) {
+      axis.values = *texts;
+    } else {
+      axis.numbers = std::get<std::vector<double>>(values);
+      for (const double x : axis.numbers) axis.values.push_back(exact_number(x));
     }
     plan.axes.push_back(std::move(axis));
   }
@@ -167,7 +168,10 @@ py::dict sweep_scene(const SceneSource& given,
   if (!sweep.moved.empty()) sweep.conflicts.push_back(sweep.moved);
   for (const auto& texts : {sweep.conflicts, sweep.warnings}) warn(texts);
   for (const auto& [outcome, text] : sweep.why) warn({outcome + ": " + text});
-  return columns_of_table(sweep.table, {plan.axes.size()});
+  std::set<std::size_t> words{plan.axes.size()};
+  for (std::size_t a = 0; a < plan.axes.size(); ++a)
+    if (plan.axes[a].numbers.empty()) words.insert(a);
+  return columns_of_table(sweep.table, words);
 }
 
 double solve_scene(const SceneSource& given, const std::string& key, const std::string& measure_name,

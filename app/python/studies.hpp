@@ -7,16 +7,20 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/study/scene_variation.hpp"
 
 namespace unfurl {
 
-// Columns by name: strings for the outcome, numbers else; NaN where a point has no answer. Finished points
-// are kept in FOLDER/sweep.csv, where one is given, and are not computed again.
+// The values of a key: numbers, or as TOML what is no number.
+using AxisValues = std::variant<std::vector<double>, std::vector<std::string>>;
+
+// Columns by name: strings for the outcome and for values that are none, numbers else; NaN where a point has
+// no answer. Finished points are kept in FOLDER/sweep.csv, where one is given, and are not computed again.
 pybind11::dict sweep_scene(const SceneSource& source,
-                           const std::vector<std::pair<std::string, std::vector<double>>>& vary,
+                           const std::vector<std::pair<std::string, AxisValues>>& vary,
                            const std::vector<std::string>& measures, int threads, const std::string& folder);
 
 // The value of the key for which the measure is `target`: between two numbers, the lower one first, or else

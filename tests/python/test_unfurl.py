@@ -171,6 +171,23 @@ def test_numbers_are_those_of_the_array():
         assert np.array_equal(run.x[:, i], run.x[name])
 
 
+def test_sweeps_take_words_truth_values_and_lists():
+    swing = unfurl.Scene("pendulum", set={"solver.end_time": 0.1})
+    table = swing.sweep({"solver.method": ["dvm", "rk4"], "solver.adaptive": [True, False]}, "final:kinetic_energy_J")
+    assert table["outcome"] == ["completed"] * 4
+    assert table["solver.method"] == ["dvm", "dvm", "rk4", "rk4"]
+    assert table["solver.adaptive"] == ["true", "false"] * 2
+    one = unfurl.Scene("pendulum", set={"solver.end_time": 0.1, "solver.method": "rk4"}).run()
+    assert table["final_kinetic_energy_J"][3] == one.measure("final:kinetic_energy_J")
+    pulls = [[0, 0, -1], (0, 0, -4)]
+    table = swing.sweep({"gravity.acceleration": pulls}, ["energy"])
+    for pull, energy in zip(pulls, table["energy_J"]):
+        one = unfurl.Scene("pendulum", set={"solver.end_time": 0.1, "gravity.acceleration": pull})
+        assert energy == one.run().measure("energy")
+    with pytest.raises(unfurl.SceneError, match="must be a number"):  # which a text is not
+        swing.sweep({"solver.step": ["0.01"]}, "energy")
+
+
 def test_what_is_solved_for_tells_what_its_run_is_warned_of():
     square = unfurl.Structure([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2], [1, 3]], fixed=[0],
                               gravity=(0, -10, 0), set={"solver.end_time": 0.1, "solver.step": 0.01})

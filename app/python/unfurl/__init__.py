@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import tempfile
 import warnings
 from typing import Any, Iterable, Mapping, Sequence
@@ -43,6 +44,21 @@ def _toml(value: Any) -> str:
     if isinstance(value, Iterable):
         return "[" + ", ".join(_toml(v) for v in value) + "]"
     raise TypeError(f"{value!r} is no value of a scene: a number, a word, a list or a dict is")
+
+
+def _axis(values: Any) -> list:
+    """The values of a key as numbers or, where one is none, as texts of TOML, words as they are."""
+    values = [values] if isinstance(values, str) else list(values)
+
+    def is_number(x: Any) -> bool:
+        return not isinstance(x, (str, bool, np.bool_)) and (not isinstance(x, Iterable) or np.ndim(x) == 0)
+
+    def is_word(x: Any) -> bool:
+        return isinstance(x, str) and re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", x) is not None and x not in ("true", "false", "inf", "nan")
+
+    if all(map(is_number, values)):
+        return [float(x) for x in values]
+    return [x if is_word(x) else _toml(x) for x in values]
 
 
 def _needed(package: str, by: str):
@@ -225,13 +241,14 @@ class Scene:
             warnings.warn(said, stacklevel=2)
         return stepper
 
-    def sweep(self, vary: Mapping[str, Sequence[float]], measures: Sequence[str], threads: int = 1, out: str | os.PathLike | None = None) -> dict:
-        """The measures at every point of the grid: arrays by column, the last key runs fastest.
+    def sweep(self, vary: Mapping[str, Sequence[Any]], measures: Sequence[str] | str, threads: int = 1, out: str | os.PathLike | None = None) -> dict:
+        """The measures at every point of the grid: arrays by column (lists of texts where values are no numbers), the last key runs fastest.
 
         With out=, a folder, finished points are kept in its sweep.csv: after Ctrl-C the same call does only what is missing.
         """
-        axes = [(key, [float(x) for x in values]) for key, values in vary.items()]
-        return self._source.sweep(axes, list(measures), threads, "" if out is None else os.fspath(out))
+        axes = [(key, _axis(values)) for key, values in vary.items()]
+        measures = [measures] if isinstance(measures, str) else list(measures)
+        return self._source.sweep(axes, measures, threads, "" if out is None else os.fspath(out))
 
     def study(self, steps: tuple[float, float] | None = None, methods: Sequence[str] = (), repeats: int = 5) -> Study:
         """Speed against accuracy of all methods, or of those named, in steps from the largest to the smallest [s]."""
