@@ -62,7 +62,7 @@ void undamp(const TomlTree& tree, const std::string& path, std::vector<std::stri
 
 // Changes that take from rods what they say by themselves: their moduli, and whether they give and bend.
 struct OwnOfRods {
-  std::vector<std::string> moduli, models;
+  std::vector<std::string> moduli, models, cut;  // cut: names of keys
 };
 
 OwnOfRods own_of_rods(const TomlTree& root) {
@@ -76,7 +76,10 @@ OwnOfRods own_of_rods(const TomlTree& root) {
     if (modulus && !(modulus->kind == TomlTree::Kind::real && std::isinf(modulus->real)))
       out.moduli.push_back(rod + "youngs_modulus=inf");
     if (elastic && elastic->boolean) out.models.push_back(rod + "elastic=false");
-    if (segments && segments->integer > 1) out.models.push_back(rod + "segments=1");
+    if (segments && segments->integer > 1) {
+      out.models.push_back(rod + "segments=1");
+      out.cut.push_back(rod + "segments");
+    }
   }
   return out;
 }
@@ -121,9 +124,14 @@ void add_rod_models(const TomlTree& root, std::vector<ModelChoice>& out) {
   if (now != "rigid" || !own.models.empty()) out.push_back({"rigid rods", without_waves("rigid")});
   if (now != "quasi-static" || !own.models.empty())
     add("quasi-static rods: stretched by the rigid run's forces", without_waves("quasi-static"));
-  if (now != "elastic") add("elastic rods, with waves", {"structure.rod_model=elastic"});
+  const auto in_segments = [&](const char* count, std::vector<std::string> changes) {
+    for (const std::string& key : own.cut) changes.push_back(key + count);
+    return changes;
+  };
+  if (now != "elastic") add("elastic rods, with waves", in_segments("=1", {"structure.rod_model=elastic"}));
   if (segments && segments->integer <= 1)
-    add("bending rods: elastic, in 4 segments", {"structure.rod_model=elastic", "structure.segments=4"});
+    add("bending rods: elastic, in 4 segments",
+        in_segments("=4", {"structure.rod_model=elastic", "structure.segments=4"}));
 }
 
 // Every force of a kind switched off, and what else goes with it.

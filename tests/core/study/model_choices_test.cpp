@@ -330,8 +330,10 @@ acceleration = [0, 0, -9.81]
   const double stretched = own_peak("rod_model = 'quasi-static'\n" + rod + "}]");
   const double waves = own_peak("rod_model = 'elastic'\n" + rod + "}]");
   REQUIRE(std::abs(rigid - waves) > 1);
+  const double bent = own_peak("rod_model = 'elastic'\nsegments = 4\n" + rod + "}]");
+  REQUIRE(std::abs(bent - waves) > 1e-3);
   for (const std::string& rods :
-       {rod + ", elastic = true}]", rod + ", segments = 4}]",
+       {rod + ", elastic = true}]", rod + ", segments = 4}]", rod + ", elastic = true, segments = 2}]",
         "rod_model = 'elastic'\n" + rod + ", segments = 4}]",
         "rod_model = 'elastic'\nsegments = 4\n" + rod + "}]", "rod_model = 'elastic'\n" + rod + "}]",
         std::string("rods_file = 'rods.csv'"),
@@ -341,6 +343,8 @@ acceleration = [0, 0, -9.81]
     for (const MeasuredModel& m : compare_models(scene(rods), 1, {})) {
       const bool of_rigid = m.choice.name.starts_with("rigid rods"),
                  of_forces = m.choice.name.starts_with("quasi");
+      if (m.choice.name.starts_with("elastic rods")) CHECK(m.peak_force == Approx(waves).epsilon(1e-9));
+      if (m.choice.name.starts_with("bending rods")) CHECK(m.peak_force == Approx(bent).epsilon(1e-9));
       if (!of_rigid && !of_forces) continue;
       INFO(m.choice.name << ": " << m.outcome);
       ++found;
