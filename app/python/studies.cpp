@@ -202,6 +202,7 @@ double solve_scene(const SceneSource& given, const std::string& key, const std::
   StudyHooks asking;
   asking.cancelled = hooks.cancelled;
   SceneObjective objective(source, key, measure, hooks);
+  options.why_none = [&](double x) { return objective.why_none(x); };
   double found = 0;
   try {
     const py::gil_scoped_release release;

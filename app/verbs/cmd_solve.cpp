@@ -106,7 +106,7 @@ int cmd_solve(const Arguments& arguments) {
   const SceneSource source = scene_source(find_scene(arguments.names.front()), arguments.overrides);
   const Scene scene = source.read();
   const Target target = target_of(study.target, scene);
-  const SolveOptions options = options_of(arguments, source, scene);
+  SolveOptions options = options_of(arguments, source, scene);
   const bool between = options.low < options.high;
   const Scene first = source.read({study.find + "=" + exact_number(between ? options.low : options.start)});
   if (const std::string why = idle_key_text(first, study.find); !why.empty())
@@ -120,6 +120,7 @@ int cmd_solve(const Arguments& arguments) {
   SimulationHooks hooks;
   hooks.cancelled = interrupted;
   SceneObjective objective(source, study.find, target.measure, hooks);
+  options.why_none = [&](double x) { return objective.why_none(x); };
   StudyHooks asking;
   asking.cancelled = interrupted;
   try {

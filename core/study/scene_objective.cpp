@@ -28,19 +28,26 @@ double SceneObjective::at(double x) {
     if (run.status == RunStatus::stopped) throw Cancelled();
     if (may_have_no_bound(measure_.name)) record_singular_poses(run);
     const Diagnostics diagnostics = judge(run);
-    if (run.status == RunStatus::failed) return none;
+    if (run.status == RunStatus::failed) {
+      none_[x] = run.message;
+      return none;
+    }
     Told& told = told_[x];
     told.warnings = warnings_of(run, diagnostics);
     if (const std::string flag = uniqueness_of(measure_.name); !flag.empty())
       told.unique = find_measure(flag).value(run, diagnostics) != 0.0;
     return measure_.value(run, diagnostics);
-  } catch (const SceneError&) {
-    return none;
-  } catch (
-      const PathRefused&) {  // solver.model = "path": one parameter without an answer, if others have one
-    if (told_.empty()) throw;
-    return none;
+  } catch (const SceneError& error) {
+    none_[x] = error.problems().front().message;
+  } catch (const PathRefused& refused) {  // solver.model = "path"
+    none_[x] = refused.what();
   }
+  return none;
+}
+
+std::string SceneObjective::why_none(double x) const {
+  const auto at = none_.find(x);
+  return at == none_.end() ? std::string() : at->second;
 }
 
 std::vector<std::string> SceneObjective::warnings(double x) const {

@@ -20,6 +20,7 @@ class SceneObjective {
 
   // NaN where x is no valid value of the key or the run failed. Throws Cancelled.
   double at(double x);
+  std::string why_none(double x) const;  // empty: there is a run
   // Of the run at an x that was asked for: what it is warned of, and that its force is not unique.
   std::vector<std::string> warnings(double x) const;
   std::optional<bool> unique(double x) const;  // none: not a force, or no run
@@ -34,6 +35,7 @@ class SceneObjective {
   RunMeasure measure_;
   SimulationHooks hooks_;
   std::map<double, Told> told_;
+  std::map<double, std::string> none_;
 };
 
 }  // namespace unfurl

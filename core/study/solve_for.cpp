@@ -62,11 +62,17 @@ class Search {
                    " the measure runs from " + short_number(lo, 9) + " to " + short_number(hi, 9));
   }
 
+  [[noreturn]] void give_up_at(const Evaluation& e, const std::string& why) const {
+    const std::string reason = o_.why_none ? o_.why_none(e.x) : "";
+    give_up(why + (reason.empty() ? "" : ": " + reason));
+  }
+
   void bracket_given() {
     a_ = at(o_.low);
     b_ = at(o_.high);
     for (const Evaluation& end : {a_, b_}) {
-      if (!valid(end)) give_up("the measure is not there at an end of --between, " + short_number(end.x, 9));
+      if (!valid(end))
+        give_up_at(end, "the measure is not there at an end of --between, " + short_number(end.x, 9));
       if (exact(end)) return void(a_ = b_ = end);
     }
     if (!opposite(a_, b_)) give_up("the target does not lie between the ends of --between");
@@ -75,7 +81,7 @@ class Search {
   // Outwards to both sides in turn. An invalid x is a wall that is approached by halving.
   void bracket_around() {
     const Evaluation start = at(o_.start);
-    if (!valid(start)) give_up("the scene as it stands has no such measure");
+    if (!valid(start)) give_up_at(start, "the scene as it stands has no such measure");
     a_ = b_ = start;
     if (exact(start)) return;
     const double first = o_.start != 0 ? 0.02 * std::abs(o_.start) : 0.02;
@@ -178,7 +184,7 @@ class Search {
         a_ = b_ = best_ = e;
         return;
       }
-      if (!valid(e)) give_up("the measure is not there for a parameter of " + short_number(x, 9));
+      if (!valid(e)) give_up_at(e, "the measure is not there for a parameter of " + short_number(x, 9));
       const double fe = e.value - target_;
       if ((fe < 0) == (fa < 0)) {
         a_ = e, fa = fe;

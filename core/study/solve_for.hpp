@@ -20,8 +20,9 @@ struct SolveOptions {
   int most = 200;              // evaluations
   // Looking around, a side is given up where its evaluations took so long and the last one so many times the
   // first: towards a step of zero runs grow without end.
-  double patience_s = 10, patience_of_first = 30;  // [s], times
-  std::function<double()> clock = nullptr;         // [s]; by default the CPU time of this thread
+  double patience_s = 10, patience_of_first = 30;         // [s], times
+  std::function<double()> clock = nullptr;                // [s]; by default the CPU time of this thread
+  std::function<std::string(double)> why_none = nullptr;  // why there is no value at x; empty: unknown
 };
 
 struct Evaluation {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/study/scene_objective.hpp"
+#include "core/study/solve_for.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -54,9 +55,9 @@ TEST_CASE("a measure is a function of a scene's key") {
   CHECK_FALSE(objective_of(bob, "structure.nodes[B].mass", "end_time").unique(2));
 }
 
-// Two stops at one angle are met at once, which no path describes: where nothing else was asked for, it is
-// told. Of a bob of 2 kg that falls from the level to 60 degrees below it the stop takes 1 - 0.4^2 of 20 N m
-// sin 60.
+// Two stops at one angle are met at once, which no path describes: there is
+// no value, and why is told. Of a bob of 2 kg that falls from the level to 60 degrees below it the stop takes
+// 1 - 0.4^2 of 20 N m sin 60.
 TEST_CASE("a parameter that a path refuses has no measure where others have one") {
   const std::string stops = R"(
 structure.kind = "custom"
@@ -70,9 +71,33 @@ gravity.acceleration = [0, 0, -10]
 solver = {step = 0.01, end_time = 1, model = "path"}
 )";
   SceneObjective most = objective_of(stops, "constraints[t].min", "max:kinetic_energy_J");
-  CHECK_THROWS_AS(most.at(30), PathRefused);
-  CHECK(most.at(20) == Approx(20 * std::sin(pi / 3)).epsilon(1e-6));
   CHECK(std::isnan(most.at(30)));
+  CHECK(most.why_none(30).find("two stops are met at once") != std::string::npos);
+  SolveOptions options;
+  options.low = 20, options.high = 30;
+  options.why_none = [&](double x) { return most.why_none(x); };
+  CHECK_THROWS_WITH(solve_for([&](double x) { return most.at(x); }, 15, options, {}),
+                    Catch::Contains("the measure is not there at an end of --between, 30") &&
+                        Catch::Contains("two stops are met at once"));
+  CHECK(most.at(20) == Approx(20 * std::sin(pi / 3)).epsilon(1e-6));
+  CHECK(most.why_none(20).empty());
+}
+
+TEST_CASE("why the runs of a scene have no measure is said") {
+  // A crank that is to turn past what its rod reaches.
+  const std::string reach = R"(
+structure.kind = "custom"
+structure.nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1, 0, 0]},
+  {name = "B", position = [2, 0, 1]}, {name = "P", position = [2, 0, 0], fixed = true},
+  {name = "X", position = [0, 0, 1], fixed = true}]
+structure.rods = [{nodes = ["O", "A"], mass = 1}, {nodes = ["A", "B"], mass = 1}, {nodes = ["P", "B"], mass = 1}]
+structure.constraints = [{kind = "plane", nodes = ["A", "B"], normal = [0, 1, 0]}]
+constraints = [{kind = "angle", name = "m", nodes = ["X", "O", "A"], axis = [0, 1, 0], motion = "rate", rate = 90}]
+solver = {step = 0.01, end_time = 3}
+)";
+  SceneObjective speed = objective_of(reach, "constraints.m.rate", "peak_speed");
+  CHECK(std::isnan(speed.at(90)));
+  CHECK(speed.why_none(90).find("reach") != std::string::npos);
 }
 
 TEST_CASE("a force that the model does not determine is told of the run that was asked for") {
