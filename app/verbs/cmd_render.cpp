@@ -22,6 +22,20 @@
 
 namespace unfurl {
 
+namespace {
+
+void refuse_another_film(OwnDirectory& output, const FilmFolder& folder, const Arguments& arguments) {
+  folder.refuse_to_encode_another(arguments.encode_only);
+  if (folder.holds_another() && !arguments.force)
+    throw FileError(output.path(),
+                    "holds frames of another film (the scene, its settings or the program changed); "
+                    "use --force to start over, or another -o");
+  if (output.lock().shared() && !arguments.join && !folder.holds_this())
+    throw FileError(output.path(), "another unfurl is writing another film into it; use another -o");
+}
+
+}  // namespace
+
 int cmd_render(const Arguments& arguments) {
   if (arguments.mode > 0) return render_mode(arguments);
   if (!arguments.at.empty()) throw UsageError("--at is the pose of --mode; leave it out, or add --mode K");
@@ -42,13 +56,7 @@ int cmd_render(const Arguments& arguments) {
   const std::filesystem::path& directory = output.path();
   DirectoryLock& lock = output.lock();
   FilmFolder folder(directory, scene, arguments.gpu);
-  folder.refuse_to_encode_another(arguments.encode_only);
-  if (folder.holds_another() && !arguments.force)
-    throw FileError(directory,
-                    "holds frames of another film (the scene, its settings or the program changed); "
-                    "use --force to start over, or another -o");
-  if (lock.shared() && !arguments.join && !folder.holds_this())
-    throw FileError(directory, "another unfurl is writing another film into it; use another -o");
+  refuse_another_film(output, folder, arguments);
   if (!arguments.frames.empty()) frame_range(arguments.frames, 100000);
   if (folder.fresh() || arguments.join) folder.claim();  // others may join before the simulation ends
   if (folder.holds_this()) lock.share();
