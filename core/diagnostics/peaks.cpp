@@ -15,6 +15,7 @@
 #include "core/diagnostics/peak_samples.hpp"
 #include "core/diagnostics/quintic.hpp"
 #include "core/diagnostics/reactions.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/dense_output.hpp"
@@ -396,8 +397,10 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
     return out;
   };
   const std::vector<double> at_states = signed_values(*column);
-  const auto dips = sign < 0 ? reaction_dips(d, name) : std::vector<std::size_t>();
-  PeakInMotion top = top_of_motion(run, at_states, of_the_state(*column) ? values : StateValues(), dips);
+  std::vector<std::size_t> also = sign < 0 ? reaction_dips(d, name) : std::vector<std::size_t>();
+  if (name == (sign < 0 ? "axial_force_min_N" : "axial_force_max_N"))
+    also = rod_humps(run.trajectory, d, sign);
+  PeakInMotion top = top_of_motion(run, at_states, of_the_state(*column) ? values : StateValues(), also);
   if (is_force(*column) && at_states.size() == run.trajectory.size())
     if (const PeakInMotion rise = without_bound(run, at_states, values); !std::isnan(rise.value)) {
       if (!(rise.value <= top.value)) top = rise;

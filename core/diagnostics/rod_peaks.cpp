@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <utility>
+
+#include "core/diagnostics/peak_samples.hpp"
 
 namespace unfurl {
 
@@ -61,6 +65,34 @@ PeakForce peak_rod_force(const Simulation& run, const Diagnostics& d, Pull pull)
     peak.force_N = top.value, peak.t = top.t;
   peak.unique = peak.unique && top.bounded;
   return peak;
+}
+
+std::vector<std::size_t> rod_humps(const Trajectory& run, const Diagnostics& d, double sign) {
+  constexpr std::size_t most = 3;
+  constexpr double round_off = 1e-9;
+  const Index states = d.axial_force.rows();
+  double best = -std::numeric_limits<double>::infinity();
+  for (Index r = 0; r < d.axial_force.cols(); ++r)
+    for (Index i = 0; d.shows(r) && i < states; ++i) best = std::max(best, sign * d.axial_force(i, r));
+  std::vector<std::pair<double, std::size_t>> found;
+  const auto leads = [&](std::size_t i) {
+    return &run.model(i) == &run.model(i + 1) && run.time(i) < run.time(i + 1) &&
+           !run.report(i + 1).singular_event;
+  };
+  for (Index r = 0; r < d.axial_force.cols(); ++r)
+    for (Index i = 1; d.shows(r) && i + 1 < states; ++i) {
+      const double x = sign * d.axial_force(i, r), before = sign * d.axial_force(i - 1, r),
+                   behind = sign * d.axial_force(i + 1, r);
+      const auto k = static_cast<std::size_t>(i);
+      if (!(x >= before && x >= behind) || !leads(k - 1) || !leads(k)) continue;
+      const double reach = vertex({run.time(k - 1), run.time(k), run.time(k + 1)}, {before, x, behind}).value;
+      if (reach - x > round_off * std::abs(x) && 2 * reach - x > best) found.push_back({reach, k});
+    }
+  std::ranges::stable_sort(found, std::greater(), [](const auto& hump) { return hump.first; });
+  std::vector<std::size_t> out;
+  for (const auto& [reach, k] : found)
+    if (out.size() < most && std::ranges::find(out, k) == out.end()) out.push_back(k);
+  return out;
 }
 
 WorstRod worst_rod(const Simulation& run, const Diagnostics& d,

@@ -2,6 +2,9 @@
 // Which rod bears the largest force of a motion, and when, within steps too.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/peaks.hpp"
 #include "core/diagnostics/rod_strength.hpp"
@@ -11,6 +14,10 @@ namespace unfurl {
 // As peak_rod_force() and worst_rod() of the states, but of the motion: where the peak lies within a step,
 // the rod that bears most there. Its force is then unique where it is at both ends of the step.
 PeakForce peak_rod_force(const Simulation& run, const Diagnostics& diagnostics, Pull pull = Pull::either);
+// The states at which single rods have humps that may top all forces of the states, the highest first, a few:
+// where another rod bears nearly as much all the time, the largest of all rods does not show them. sign: 1 of
+// tension, -1 of compression.
+std::vector<std::size_t> rod_humps(const Trajectory& run, const Diagnostics& diagnostics, double sign);
 // `quantity`: axial_stress, stress_ratio or buckling_ratio.
 WorstRod worst_rod(const Simulation& run, const Diagnostics& diagnostics,
                    double (*quantity)(const Rod&, double force));

@@ -5,6 +5,7 @@
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/peaks.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
 #include "core/path/path_run.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -267,6 +268,34 @@ stages = 4
     const VectorXd there = rod_forces_within_step(run, peak.t);
     REQUIRE(there.size() == 2);
     CHECK(there.minCoeff() == Approx(peak.value).epsilon(1e-4));
+  }
+}
+
+// A pendulum of 1 kg that swings down from 60 degrees pulls with 2 m g at its lowest, at no state; beside it
+// one hangs that weighs 0.05 N less than that, and more than the first has at any state.
+TEST_CASE("a rod that tops another one within a step only is the one of the peak") {
+  for (const double step : {0.1, 0.08, 0.05}) {
+    INFO(step);
+    const Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "E", position = [5, 0, 0], fixed = true}, {name = "F", position = [5, 0, -1], mass = "=2 - 0.05/9.81"},
+         {name = "A", position = [0, 0, 0], fixed = true},
+         {name = "B", position = [0.8660254037844386, 0, -0.5], mass = 1}]
+rods = [{name = "Q", nodes = ["E", "F"], mass = 0}, {name = "R", nodes = ["A", "B"], mass = 0}]
+constraints = [{kind = "plane", nodes = ["B", "F"], normal = [0, 1, 0]}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+stages = 4
+end_time = 1
+step = )" + std::to_string(step) + "\n");
+    REQUIRE(run.status == RunStatus::completed);
+    const Diagnostics d = diagnose(run);
+    const PeakForce peak = peak_rod_force(run, d);
+    CHECK(peak.rod == 1);
+    CHECK(peak.force_N == Approx(2 * g).epsilon(1e-6));
+    CHECK(largest_of_column(run, d, "axial_force_max_N") == Approx(2 * g).epsilon(1e-6));
   }
 }
 
