@@ -43,9 +43,9 @@ ForceUniqueness::ForceUniqueness(const Simulation& run, const KnownUniqueness& b
   for (std::size_t first = 0, last = 0; first < trajectory.size(); first = last + 1) {
     const RestingRows resting(trajectory.model(first));
     const auto rests_at = [&](std::size_t i) {
-      const bool goes_on = i + 1 < trajectory.size() && &trajectory.model(i + 1) == &trajectory.model(i);
+      const bool leads = i + 1 < trajectory.size() && &trajectory.model(i + 1) == &trajectory.model(i);
       return resting.empty() ? std::vector<char>()
-                             : resting.at(trajectory.state(i), goes_on ? &trajectory.state(i + 1) : nullptr,
+                             : resting.at(trajectory.state(i), leads ? &trajectory.state(i + 1) : nullptr,
                                           run.options.step);
     };
     const std::vector<char>& rests = rests_[first] = rests_at(first);
