@@ -5,6 +5,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/scene/custom_reader.hpp"
 #include "core/scene/key_tables.hpp"
@@ -105,6 +107,48 @@ std::string render_text(const Scene& scene) {
   return text;
 }
 
+using TextMembers = std::vector<std::pair<std::string_view, std::string>>;  // key, value as TOML
+
+TextMembers members_of(const CustomNode& node) {
+  TextMembers members{{"name", toml_string(node.name)}, {"position", vec_text(node.position)}};
+  if (!node.velocity.isZero(0.0)) members.emplace_back("velocity", vec_text(node.velocity));
+  if (node.mass != 0.0) members.emplace_back("mass", real_text(node.mass));
+  if (node.fixed) members.emplace_back("fixed", "true");
+  return members;
+}
+
+TextMembers members_of(const CustomRod& rod) {
+  TextMembers members;
+  if (!rod.name.empty()) members.emplace_back("name", toml_string(rod.name));
+  members.emplace_back("nodes", names_text(rod.nodes));
+  if (rod.mass) members.emplace_back("mass", real_text(*rod.mass));
+  if (rod.density != 0.0) members.emplace_back("density", real_text(rod.density));
+  if (rod.area != 0.0) members.emplace_back("area", real_text(rod.area));
+  if (rod.length != 0.0) members.emplace_back("length", real_text(rod.length));
+  if (!std::isnan(rod.youngs_modulus)) members.emplace_back("youngs_modulus", real_text(rod.youngs_modulus));
+  if (!std::isnan(rod.strength)) members.emplace_back("strength", real_text(rod.strength));
+  if (rod.second_moment != 0.0) members.emplace_back("second_moment", real_text(rod.second_moment));
+  if (rod.elastic) members.emplace_back("elastic", *rod.elastic ? "true" : "false");
+  if (rod.segments > 0) members.emplace_back("segments", std::to_string(rod.segments));
+  if (rod.free_length != 0.0) members.emplace_back("free_length", real_text(rod.free_length));
+  if (rod.group != "rod") members.emplace_back("group", toml_string(rod.group));
+  return members;
+}
+
+std::string entry_text(std::string_view list, const std::vector<ParamSpec>& specs,
+                       const TextMembers& members) {
+  std::string text = "\n[[" + std::string(list) + "]]\n";
+  for (const auto& [key, value] : members) text += line_of(specs, key, value);
+  return text;
+}
+
+std::string inline_table(const TextMembers& members) {
+  std::string text;
+  for (const auto& [key, value] : members)
+    text += (text.empty() ? "" : ", ") + std::string(key) + " = " + value;
+  return "{" + text + "}";
+}
+
 std::string idle_lines(const SceneElement& element, const ElementKind& kind) {
   std::string text;
   for (const auto& spec : kind.params()) {
@@ -119,33 +163,19 @@ std::string idle_lines(const SceneElement& element, const ElementKind& kind) {
 }  // namespace
 
 std::string custom_node_text(const CustomNode& node) {
-  const auto& specs = custom_node_params();
-  std::string text = "\n[[structure.nodes]]\n" + line("name", toml_string(node.name));
-  text += line_of(specs, "position", vec_text(node.position));
-  if (!node.velocity.isZero(0.0)) text += line_of(specs, "velocity", vec_text(node.velocity));
-  if (node.mass != 0.0) text += line_of(specs, "mass", real_text(node.mass));
-  if (node.fixed) text += line("fixed", "true");
-  return text;
+  return entry_text("structure.nodes", custom_node_params(), members_of(node));
 }
 
 std::string custom_rod_text(const CustomRod& rod) {
-  const auto& specs = custom_rod_params();
-  std::string text = "\n[[structure.rods]]\n";
-  if (!rod.name.empty()) text += line("name", toml_string(rod.name));
-  text += line("nodes", names_text(rod.nodes));
-  if (rod.mass) text += line_of(specs, "mass", real_text(*rod.mass));
-  if (rod.density != 0.0) text += line_of(specs, "density", real_text(rod.density));
-  if (rod.area != 0.0) text += line_of(specs, "area", real_text(rod.area));
-  if (rod.length != 0.0) text += line_of(specs, "length", real_text(rod.length));
-  if (!std::isnan(rod.youngs_modulus))
-    text += line_of(specs, "youngs_modulus", real_text(rod.youngs_modulus));
-  if (!std::isnan(rod.strength)) text += line_of(specs, "strength", real_text(rod.strength));
-  if (rod.second_moment != 0.0) text += line_of(specs, "second_moment", real_text(rod.second_moment));
-  if (rod.elastic) text += line("elastic", *rod.elastic ? "true" : "false");
-  if (rod.segments > 0) text += line("segments", std::to_string(rod.segments));
-  if (rod.free_length != 0.0) text += line_of(specs, "free_length", real_text(rod.free_length));
-  if (rod.group != "rod") text += line("group", toml_string(rod.group));
-  return text;
+  return entry_text("structure.rods", custom_rod_params(), members_of(rod));
+}
+
+std::string inline_text(const CustomNode& node) {
+  return inline_table(members_of(node));
+}
+
+std::string inline_text(const CustomRod& rod) {
+  return inline_table(members_of(rod));
 }
 
 std::string idle_text(const Scene& scene) {

@@ -14,6 +14,9 @@ std::string scene_text(const Scene& scene);
 // One entry of [[structure.nodes]], of [[structure.rods]], with a blank line before it.
 std::string custom_node_text(const CustomNode& node);
 std::string custom_rod_text(const CustomRod& rod);
+// The same on one line: {name = "A", ...}.
+std::string inline_text(const CustomNode& node);
+std::string inline_text(const CustomRod& rod);
 
 // What scene_text() leaves out, as comments: given values of forces and constraints that mean nothing beside
 // what else is given, but may where that is varied.

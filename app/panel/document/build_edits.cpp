@@ -33,45 +33,16 @@ std::string node_key(std::size_t i) {
   return "structure.nodes[" + std::to_string(i) + "]";
 }
 
-std::string node_text(const CustomNode& node) {
-  std::string text =
-      "{name = " + toml_string(node.name) + ", position = " + toml_value(numbers(node.position));
-  if (node.velocity != Vec3::Zero()) text += ", velocity = " + toml_value(numbers(node.velocity));
-  if (node.mass > 0) text += ", mass = " + toml_value(node.mass);
-  if (node.fixed) text += ", fixed = true";
-  return text + "}";
-}
-
-std::string rod_text(const CustomRod& rod) {
-  std::string text = "{nodes = " + toml_value(rod.nodes);
-  const auto add = [&](const char* key, const ParamValue& value) {
-    text += std::string(", ") + key + " = " + toml_value(value);
-  };
-  if (!rod.name.empty()) add("name", rod.name);
-  if (rod.mass) add("mass", *rod.mass);
-  if (!rod.mass && rod.density > 0) add("density", rod.density);
-  if (rod.area > 0) add("area", rod.area);
-  if (rod.group != "rod") add("group", rod.group);
-  if (rod.length > 0) add("length", rod.length);
-  if (std::isfinite(rod.youngs_modulus)) add("youngs_modulus", rod.youngs_modulus);
-  if (std::isfinite(rod.strength)) add("strength", rod.strength);
-  if (rod.second_moment > 0) add("second_moment", rod.second_moment);
-  if (rod.elastic) add("elastic", *rod.elastic);
-  if (rod.segments > 0) add("segments", rod.segments);
-  if (rod.free_length > 0) add("free_length", rod.free_length);
-  return text + "}";
-}
-
 const CustomNode* find_node(const CustomSpec& spec, const std::string& name) {
   const auto at =
       std::find_if(spec.nodes.begin(), spec.nodes.end(), [&](const CustomNode& n) { return n.name == name; });
   return at == spec.nodes.end() ? nullptr : &*at;
 }
 
-template <class Parts, class Text>
-std::string list_text(const Parts& parts, const Text& text) {
+template <class Parts>
+std::string list_text(const Parts& parts) {
   std::string list;
-  for (const auto& part : parts) list += (list.empty() ? "" : ", ") + text(part);
+  for (const auto& part : parts) list += (list.empty() ? "" : ", ") + inline_text(part);
   return "[" + list + "]";
 }
 
@@ -82,8 +53,8 @@ SceneDocument with_lists(SceneDocument document, const CustomSpec& spec) {
   };
   std::erase_if(document.added, of_lists);
   std::erase_if(document.edits, [&](const auto& edit) { return of_lists(edit.first); });
-  document.added.push_back("structure.nodes=" + list_text(spec.nodes, node_text));
-  document.added.push_back("structure.rods=" + list_text(spec.rods, rod_text));
+  document.added.push_back("structure.nodes=" + list_text(spec.nodes));
+  document.added.push_back("structure.rods=" + list_text(spec.rods));
   return document;
 }
 
@@ -109,7 +80,7 @@ SceneDocument with_node(const SceneDocument& document, const Vec3& position, std
   node.name = name;
   node.position = rounded(position);
   node.mass = 1;  // what hangs on nothing must have some
-  with.added.push_back(node_key(scene.custom.nodes.size()) + "=" + node_text(node));
+  with.added.push_back(node_key(scene.custom.nodes.size()) + "=" + inline_text(node));
   return with;
 }
 
@@ -121,7 +92,8 @@ SceneDocument with_rod(const SceneDocument& document, const std::string& a, cons
   CustomRod rod;
   rod.nodes = {a, b};
   rod.mass = 1;
-  with.added.push_back("structure.rods[" + std::to_string(scene.custom.rods.size()) + "]=" + rod_text(rod));
+  with.added.push_back("structure.rods[" + std::to_string(scene.custom.rods.size()) +
+                       "]=" + inline_text(rod));
   return with;
 }
 

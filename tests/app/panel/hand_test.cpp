@@ -223,6 +223,12 @@ segments = 3
 youngs_modulus = 5e9
 area = 2e-4
 [[structure.rods]]
+nodes = ["C", "A"]
+mass = 0.5
+area = 1e-4
+youngs_modulus = inf
+strength = inf
+[[structure.rods]]
 nodes = ["A", "C"]
 mass = 1
 )";
@@ -232,7 +238,7 @@ mass = 1
   const CustomSpec before = read_document(document).custom,
                    after = read_document(without_part(document, {Selection::Kind::rod, "A-C"})).custom;
   REQUIRE(after.nodes.size() == 3);
-  REQUIRE(after.rods.size() == 2);
+  REQUIRE(after.rods.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) {
     const CustomNode &a = before.nodes[i], &b = after.nodes[i];
     CHECK(a.name == b.name);
@@ -242,7 +248,7 @@ mass = 1
     CHECK(a.fixed == b.fixed);
   }
   const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     const CustomRod &a = before.rods[i], &b = after.rods[i];
     CHECK(a.name == b.name);
     CHECK(a.nodes == b.nodes);
