@@ -44,7 +44,7 @@ void add_long_runs(const Stress& stress, Report& report) {
 int cmd_stress(const Arguments& arguments) {
   const SceneSource source = scene_source(find_scene(arguments.names.front()), arguments.overrides);
   const Scene scene = source.read();
-  receipt_scene(scene.name, scene_text(scene));
+  receipt_scene(scene.name, scene_text(scene, IdleValues::written));
   warn_of_own_steps(scene);
   const StressPlan plan = plan_stress(source, arguments.study.extremes);
   const InterruptGuard guard;

@@ -170,7 +170,7 @@ void receipt_of_sweep(const Scene& scene, const SweepPlan& plan) {
   if (by_variables(plan) && scene.files.empty())
     receipt_scene(scene.name, source.text ? *source.text : bytes_of(source.path), SceneOptions::in_command);
   else
-    receipt_scene(scene.name, scene_text(scene));
+    receipt_scene(scene.name, scene_text(scene, IdleValues::written));
 }
 
 // What a whole sweep is of: a title that names what is varied would speak of one point.

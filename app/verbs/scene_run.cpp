@@ -46,7 +46,7 @@ bool waited_enough() {
 
 Scene scene_of(const Arguments& arguments) {
   Scene scene = read_scene_file(find_scene(arguments.names.front()), arguments.overrides);
-  receipt_scene(scene.name, scene_text(scene));
+  receipt_scene(scene.name, scene_text(scene, IdleValues::written));
   return scene;
 }
 

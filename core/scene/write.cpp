@@ -58,7 +58,12 @@ bool worth_writing(const ParamValue& value) {
   return !list || !list->empty();
 }
 
-std::string element_text(std::string_view table, const SceneElement& element, const ElementKind& kind) {
+bool is_idle(const ParamSpec& spec, const SceneElement& element, const ElementKind& kind) {
+  return !means_something(spec, kind.params(), element.values);
+}
+
+std::string element_text(std::string_view table, const SceneElement& element, const ElementKind& kind,
+                         IdleValues idle) {
   std::string text = "\n[[" + std::string(table) + "]]\n" + line("kind", toml_string(element.kind));
   text += line("name", toml_string(element.name));
   if (!element.nodes.empty()) text += line("nodes", names_text(element.nodes));
@@ -70,7 +75,8 @@ std::string element_text(std::string_view table, const SceneElement& element, co
   if (element.fold_angle) text += line("fold_angle", "true");
   for (const auto& spec : kind.params()) {
     const ParamValue& value = element.values.value(spec.name);
-    if (!worth_writing(value) || !means_something(spec, kind.params(), element.values)) continue;
+    if (!worth_writing(value)) continue;
+    if (is_idle(spec, element, kind) && (idle == IdleValues::left_out || value == spec.fallback)) continue;
     text += line(spec.name, toml_value(value), spec.unit);
   }
   return text;
@@ -153,8 +159,7 @@ std::string idle_lines(const SceneElement& element, const ElementKind& kind) {
   std::string text;
   for (const auto& spec : kind.params()) {
     const ParamValue& value = element.values.value(spec.name);
-    if (worth_writing(value) && value != spec.fallback &&
-        !means_something(spec, kind.params(), element.values))
+    if (worth_writing(value) && value != spec.fallback && is_idle(spec, element, kind))
       text += "# of " + toml_string(element.name) + ": " + line(spec.name, toml_value(value));
   }
   return text;
@@ -217,7 +222,7 @@ std::string toml_value(const ParamValue& value) {
   return std::visit(Writer{}, value);
 }
 
-std::string scene_text(const Scene& scene) {
+std::string scene_text(const Scene& scene, IdleValues idle) {
   std::string text = line("title", toml_string(scene.title_pattern.empty() ? title_that_says(scene.title)
                                                                            : scene.title_pattern)) +
                      structure_text(scene);
@@ -226,9 +231,9 @@ std::string scene_text(const Scene& scene) {
     text += "\n[[loads]]\n" + (load.enabled ? "" : line("enabled", "false")) +
             line("nodes", names_text(load.nodes)) + line_of(load_params(), "force", vec_text(load.force));
   for (const auto& force : scene.forces)
-    text += element_text("forces", force, *find_kind(scene_forces(), force.kind));
+    text += element_text("forces", force, *find_kind(scene_forces(), force.kind), idle);
   for (const auto& constraint : scene.constraints)
-    text += element_text("constraints", constraint, *find_kind(scene_constraints(), constraint.kind));
+    text += element_text("constraints", constraint, *find_kind(scene_constraints(), constraint.kind), idle);
   if (const SceneElement& d = scene.deployment; !d.terms.empty()) {
     text += "\n[deployment]\n" + line("measure", names_text(d.terms));
     for (const auto& spec : deployment_params())

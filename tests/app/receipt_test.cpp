@@ -179,6 +179,29 @@ TEST_CASE("a sweep over variables is made again") {
   CHECK(receipt->scene.find("L = 1") != std::string::npos);
 }
 
+// At the scene's own value of the first axis `to`, `duration` mean nothing; at the other they do.
+TEST_CASE("a sweep over what gives other keys their meaning is made again") {
+  const ScratchDirectory dir;
+  const std::string scene = dir.write(
+      "drive.toml",
+      "[structure]\nkind = \"custom\"\nnodes = [{name = \"A\", position = [0, 0, 0], fixed = true}, {name = "
+      "\"B\", position = [1, 0, 0]}]\nrods = [{nodes = [\"A\", \"B\"], mass = 1}]\n"
+      "[[constraints]]\nkind = \"plane\"\nnodes = [\"B\"]\nnormal = [0, 1, 0]\n"
+      "[[constraints]]\nkind = \"coordinate\"\nname = \"motor\"\nnodes = [\"B\"]\ndirection = [0, 0, 1]\n"
+      "motion = \"rate\"\nrate = 0.3\nto = 0.5\nstart = 0.1\nduration = 0.6\n[solver]\nend_time = 0.3\n");
+  REQUIRE(run_program({"sweep", scene, "--vary", "constraints[motor].motion=rate,smooth", "--vary",
+                       "structure.rods[0].mass=1,2", "--measure", "max:motor.force_N", "-o", dir / "sweep",
+                       "--dpi", "60", "--quiet"})
+              .code == 0);
+  const std::string table = file_text(dir / "sweep/sweep.csv");
+  CHECK(table.find("invalid") == std::string::npos);
+  CHECK(std::count(table.begin(), table.end(), '\n') == 5);
+  const ProgramResult again = run_program({"reproduce", dir / "sweep/sweep.csv"});
+  INFO(again.err);
+  CHECK(again.code == 0);
+  CHECK(again.out.starts_with("the same, byte by byte"));
+}
+
 TEST_CASE("a share of a sweep is made again as a share, beside the whole") {
   const ScratchDirectory dir;
   for (const char* part : {"--shard=1/2", "--shard=2/2", "--merge"}) {
