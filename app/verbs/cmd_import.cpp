@@ -2,6 +2,7 @@
 // unfurl import FILE -o SCENE.toml: a custom scene of a FOLD, an OBJ or two CSV files.
 #include <filesystem>
 #include <iostream>
+#include <utility>
 
 #include "app/command.hpp"
 #include "app/output/output_directory.hpp"
@@ -41,8 +42,11 @@ int cmd_import(const Arguments& arguments) {
       throw FileError(output, "is there already; --force writes over it");
   }
   ImportedScene scene = import_scene(files_to_import(arguments.names));
-  if (!arguments.overrides.empty())
-    scene.text = write_back(scene.text, arguments.names.front(), arguments.overrides, "").text;
+  if (!arguments.overrides.empty()) {
+    WrittenBack written = write_back(scene.text, arguments.names.front(), arguments.overrides, "");
+    scene.text = std::move(written.text);
+    if (written.anew) std::cerr << "unfurl: " << said_of_written_anew << "\n";
+  }
   if (output.empty())
     std::cout << scene.text;
   else

@@ -199,13 +199,16 @@ TomlTree& step_into(TomlTree& tree, const Step& step, const std::string& so_far,
   return tree.entries.back().value;
 }
 
-// What stands at a key, made where nothing does.
-TomlTree& made_at(TomlTree& root, const std::vector<Step>& steps) {
+// What stands at a key, made where nothing does; `place`: where that is, part by part.
+TomlTree& made_at(TomlTree& root, const std::vector<Step>& steps, std::vector<std::string>* place = nullptr) {
   TomlTree* target = &root;
   std::string so_far;
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const Step& step = steps[k];
-    target = &step_into(*target, step, so_far, k + 1 < steps.size() ? &steps[k + 1] : nullptr);
+    TomlTree& parent = *target;
+    target = &step_into(parent, step, so_far, k + 1 < steps.size() ? &steps[k + 1] : nullptr);
+    const bool entry = parent.kind == TomlTree::Kind::array;
+    if (place) place->push_back(entry ? std::to_string(target - parent.items.data()) : step.name);
     so_far += step.index ? "[" + std::to_string(*step.index) + "]" : (so_far.empty() ? "" : ".") + step.name;
   }
   return *target;
@@ -222,14 +225,7 @@ void apply(TomlTree& root, std::string_view key, std::string_view text) {
 std::vector<std::string> place_of_key(TomlTree root, const std::string& key) {
   std::vector<std::string> place;
   try {
-    const std::vector<Step> steps = parse_key(key);
-    TomlTree* target = &root;
-    for (std::size_t k = 0; k < steps.size(); ++k) {
-      TomlTree* const parent = target;
-      target = &step_into(*parent, steps[k], "", k + 1 < steps.size() ? &steps[k + 1] : nullptr);
-      const bool entry = parent->kind == TomlTree::Kind::array;
-      place.push_back(entry ? std::to_string(target - parent->items.data()) : steps[k].name);
-    }
+    made_at(root, parse_key(key), &place);
   } catch (const Refusal&) {
     return {key};
   }

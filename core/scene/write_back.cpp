@@ -5,6 +5,7 @@
 #include <charconv>
 #include <optional>
 
+#include "core/scene/overrides.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/toml_tree.hpp"
 #include "core/scene/write.hpp"
@@ -54,33 +55,12 @@ std::size_t value_end(std::string_view text, std::size_t at) {
   return end;
 }
 
-// A member of a table, or an item of an array: "loads[0]" is two steps.
-struct KeyPart {
-  std::string name;
-  std::optional<std::size_t> index;
-};
-
-std::vector<KeyPart> steps_of(std::string_view key) {
-  std::vector<KeyPart> steps;
-  while (!key.empty()) {
-    const std::size_t end = std::min(key.find_first_of(".["), key.size());
-    if (end > 0) steps.push_back({std::string(key.substr(0, end)), {}});
-    if (end < key.size() && key[end] == '[') {
-      std::size_t index = 0;
-      std::from_chars(key.data() + end + 1, key.data() + key.size(), index);
-      steps.push_back({"", index});
-      key.remove_prefix(std::min(key.find(']', end), key.size() - 1) + 1);
-    } else {
-      key.remove_prefix(end);
-    }
-    if (key.starts_with(".")) key.remove_prefix(1);
-  }
-  return steps;
-}
-
-const TomlTree* member(const TomlTree& tree, const KeyPart& step) {
-  if (step.index) return *step.index < tree.items.size() ? &tree.items[*step.index] : nullptr;
-  return tree.find(step.name);
+// A member of a table, or an item of an array by its index.
+const TomlTree* member(const TomlTree& tree, const std::string& step) {
+  if (tree.kind != TomlTree::Kind::array) return tree.find(step);
+  std::size_t index = tree.items.size();
+  std::from_chars(step.data(), step.data() + step.size(), index);
+  return index < tree.items.size() ? &tree.items[index] : nullptr;
 }
 
 // Behind the last line of a table's own values.
@@ -117,8 +97,9 @@ Replacement at_the_end(std::string_view text, const std::string& lines) {
 // What makes the key have the value; nullopt where the text has no place for it.
 std::optional<Replacement> replacement(std::string_view text, const TomlTree& root, std::string_view key,
                                        const std::string& value) {
-  const auto steps = steps_of(key);
-  if (steps.empty()) return std::nullopt;
+  const std::vector<std::string> steps = place_of_key(root, std::string(key));
+  const bool entry = key.ends_with(']');
+  if (steps.size() == 1 && key.find_first_of(".[") != key.npos) return std::nullopt;  // it leads nowhere
   const TomlTree* table = &root;
   for (std::size_t i = 0; i + 1 < steps.size() && table; ++i) table = member(*table, steps[i]);
   if (table) {
@@ -127,10 +108,10 @@ std::optional<Replacement> replacement(std::string_view text, const TomlTree& ro
       return Replacement{begin, value_end(text, begin), value};
     }
   }
-  const std::string line = steps.back().name + " = " + value + "\n";
-  if (steps.size() >= 2 && steps.back().index) {  // a new entry of a list
+  const std::string line = steps.back() + " = " + value + "\n";
+  if (steps.size() >= 2 && entry) {  // a new entry of a list
     std::string list;
-    for (std::size_t i = 0; i + 1 < steps.size(); ++i) list += (i == 0 ? "" : ".") + steps[i].name;
+    for (std::size_t i = 0; i + 1 < steps.size(); ++i) list += (i == 0 ? "" : ".") + steps[i];
     return at_the_end(text, "[[" + list + "]]\n" + member_lines(value));
   }
   if (table) {
@@ -139,8 +120,8 @@ std::optional<Replacement> replacement(std::string_view text, const TomlTree& ro
     const bool broken = *end > 0 && text[*end - 1] != '\n';
     return Replacement{*end, *end, (broken ? "\n" : "") + line};
   }
-  if (steps.size() != 2 || steps[1].index) return std::nullopt;
-  return at_the_end(text, "[" + steps[0].name + "]\n" + line);
+  if (steps.size() != 2) return std::nullopt;
+  return at_the_end(text, "[" + steps[0] + "]\n" + line);
 }
 
 // As TOML: a bare word becomes a string.
@@ -166,6 +147,12 @@ std::optional<std::string> edited(std::string text, const std::string& name,
   return text;
 }
 
+// The title that the text gives, as it gives it; empty: none.
+std::string title_in(const TomlTree& root) {
+  const TomlTree* title = root.find("title");
+  return title && title->kind == TomlTree::Kind::text ? title->text : "";
+}
+
 bool sets_title(const std::vector<std::string>& overrides) {
   return std::ranges::any_of(overrides, [](const std::string& text) { return text.starts_with("title="); });
 }
@@ -174,7 +161,7 @@ bool sets_title(const std::vector<std::string>& overrides) {
 
 WrittenBack write_back(std::string_view text, const std::string& name,
                        const std::vector<std::string>& overrides, const std::string& folder) {
-  const Scene scene = read_scene_text(text, name, overrides, folder);
+  Scene scene = read_scene_text(text, name, overrides, folder);
   const std::string meant = scene_text(scene);
   try {
     if (auto result = edited(std::string(text), name, overrides)) {
@@ -185,7 +172,8 @@ WrittenBack write_back(std::string_view text, const std::string& name,
     }
   } catch (const SceneError&) {  // the text has the key in a way that the search above does not know
   }
-  return {meant, true};
+  if (!sets_title(overrides)) scene.title_pattern = title_in(parse_toml(text, name));
+  return {scene_text(scene), true};
 }
 
 }  // namespace unfurl

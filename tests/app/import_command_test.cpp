@@ -51,6 +51,15 @@ TEST_CASE("a scene that import writes is checked and run as it is") {
   CHECK(set.code == 0);
   CHECK(set.err == "");
   CHECK(file_text(scene).find("density = 2700") != std::string::npos);
+  // A value has its place by the node's name, too, and the rest of the file stays as it was.
+  REQUIRE(run_program({"import", file, "-o", scene, "--force", "--set", "structure.nodes.V3.mass=2"}).err ==
+          made.err);
+  const std::string text = file_text(scene), plain = run_program({"import", file}).out;
+  CHECK(text.size() == plain.size() + std::string("mass = 2\n").size());
+  CHECK(run_program({"check", scene, "--set", "variables.density=2700"}).code == 0);
+  // Where it has none, that is said.
+  CHECK(run_program({"import", file, "--set", "structure.nodes.V3.velocity[2]=1"})
+            .err.find("without its comments and variables") != std::string::npos);
   CHECK(run_program({"import", file}).out.starts_with("# Made by `unfurl import` of 'plates.fold': 6 nodes"));
 }
 

@@ -136,6 +136,55 @@ TEST_CASE("every scene of the library takes changes in place") {
   }
 }
 
+// A name leads to the entry that has it, and its index to the same.
+TEST_CASE("written back, an entry goes by its name as by its place") {
+  const std::string text = R"(title = "W"  # mine
+[variables]
+m = 2
+[structure]
+kind = "custom"  # of rods
+nodes = [{name = "A", position = [0, 0, 0], fixed = true},  # the hinge
+         {name = "B 1", position = [1, 0, 0], mass = "=m"}]
+[[structure.rods]]
+nodes = ["A", "B 1"]
+mass = 1  # kg
+[[forces]]
+kind = "spring"
+name = "s"
+nodes = ["A", "B 1"]
+stiffness = 3
+)";
+  const auto changed = [&](const std::string& key, const std::string& value) {
+    const WrittenBack result = write_back(text, "w.toml", {key + "=" + value}, "");
+    CAPTURE(key);
+    CHECK_FALSE(result.anew);
+    return result.text;
+  };
+  const auto check_same = [&](const std::string& place, const std::vector<std::string>& keys) {
+    const std::string by_place = changed(place, "7.5");
+    CHECK(by_place != text);
+    for (const std::string& key : keys) CHECK(changed(key, "7.5") == by_place);
+  };
+  check_same("structure.nodes[1].mass",
+             {"structure.nodes[B 1].mass", "structure.nodes.\"B 1\".mass", "structure.nodes[\"B 1\"].mass"});
+  check_same("structure.rods[0].mass", {"structure.rods[A-B 1].mass", "structure.rods.A-B 1.mass"});
+  check_same("structure.rods[0].area", {"structure.rods[A-B 1].area"});  // a new key of that entry
+  check_same("forces[0].stiffness", {"forces[s].stiffness", "forces.s.stiffness"});
+}
+
+// A title that says what was changed is of one command, not of the file.
+TEST_CASE("written anew a scene keeps the title that its file gives") {
+  for (const std::string title : {"Ring", "Ring of {units}", "Ring {{a}}", ""}) {
+    const std::string first = title.empty() ? "" : "title = \"" + title + "\"\n";
+    const std::string text = first + "structure = { kind = \"hoop\", units = 6 }\n";
+    const WrittenBack result = write_back(text, "x.toml", {"structure.post_length=2.0"}, "");
+    REQUIRE(result.anew);
+    CHECK(result.text.starts_with("title = \"" + (title.empty() ? "x" : title) + "\"\n"));
+    CHECK(write_back(text, "x.toml", {"structure.post_length=2.0", "title=\"Other\""}, "")
+              .text.starts_with("title = \"Other\"\n"));
+  }
+}
+
 TEST_CASE("overrides that make no sound scene are refused, not written") {
   CHECK_THROWS_AS(write_back(hoop, "ring.toml", {"structure.units=2"}, ""), SceneError);
   CHECK_THROWS_AS(write_back(hoop, "ring.toml", {"structure.unit=8"}, ""), SceneError);
