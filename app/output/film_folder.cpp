@@ -84,6 +84,12 @@ void FilmFolder::clear(WrittenFiles& written) {
   if (holds_frames(written.directory())) written.keep_aside("frames");
 }
 
+bool FilmFolder::is_of_film(const std::string& name) {
+  const bool animation = name.starts_with("animation.") && !name.ends_with(".glb");  // which is an export
+  return animation || name.starts_with("frames/") || name.starts_with("figures/") || name == "film.json" ||
+         name == "report.html" || name.starts_with("join/");  // of those who draw it together
+}
+
 bool FilmFolder::fresh() const {
   std::error_code error;
   return !holds_another() && !fs::exists(directory_ / "summary.json", error);

@@ -28,6 +28,8 @@ class FilmFolder {
   // Throws FileError where another one is, whose frames would go for a film of which nothing is drawn.
   void refuse_to_encode_another(bool encode_only) const;
   bool fresh() const;  // no results of any kind
+  // Is a file of this name in DIR one of a film, its animations, figures and report, or its workers'?
+  static bool is_of_film(const std::string& name);
   // Remove what a run or a film left; frames that unfurl did not draw, or that were changed since, are put
   // aside with their folder, so that no frame of another film stays among ours.
   static void clear(WrittenFiles& written);

@@ -274,10 +274,10 @@ void WrittenFiles::remove(const std::string& name) {
   }
 }
 
-void WrittenFiles::remove_all(const std::string& but) {
+void WrittenFiles::remove_all(const std::function<bool(const std::string&)>& stays) {
   std::vector<std::string> names;
   for (const auto& [name, lines] : lines_)
-    if (but.empty() || !name.starts_with(but + "/")) names.push_back(name);
+    if (!stays || !stays(name)) names.push_back(name);
   for (const std::string& name : names) remove(name);
   forget_missing();
 }

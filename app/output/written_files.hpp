@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <set>
@@ -42,8 +43,8 @@ class WrittenFiles final : public FileWatcher {
   std::string other_owner(const std::string& name) const;
   bool is_empty() const;  // nothing was listed
   // Removes what is ours, but nothing behind a link, and directories that are empty then. The list forgets
-  // it. What lies in the folder `but` stays.
-  void remove_all(const std::string& but = "");
+  // it. What is asked for by its name and `stays` is left.
+  void remove_all(const std::function<bool(const std::string&)>& stays = {});
   // The same for this one.
   void remove(const std::string& name);
 

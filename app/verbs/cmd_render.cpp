@@ -15,6 +15,7 @@
 #include "app/verbs/run_report.hpp"
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/team_work.hpp"
+#include "app/verbs/unfinished_run.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/write.hpp"
 #include "render/scene/film_style.hpp"
@@ -55,6 +56,7 @@ int cmd_render(const Arguments& arguments) {
   output.require_files({"scene.toml", "series.csv", "trajectory.csv", "rod_forces.csv", "summary.json"});
   const std::filesystem::path& directory = output.path();
   DirectoryLock& lock = output.lock();
+  if (!arguments.force) UnfinishedRun::refuse_in(directory, "a film");
   FilmFolder folder(directory, scene, arguments.gpu);
   refuse_another_film(output, folder, arguments);
   if (!arguments.frames.empty()) frame_range(arguments.frames, 100000);
@@ -87,7 +89,10 @@ int cmd_render(const Arguments& arguments) {
   RunAhead beside(arguments.threads);
   const std::string summary =
       write_data(directory, scene, run, diagnostics, as_typed(arguments.words), beside, true, [&] {
-        if (another) FilmFolder::clear(output.written());
+        if (another)
+          FilmFolder::clear(output.written());
+        else
+          make_room(output.written(), Beside::film);
       });
   if (another) claim();
   write_exports(formats, directory, scene, run, diagnostics, arguments);

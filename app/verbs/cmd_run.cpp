@@ -59,17 +59,15 @@ Diagnostics judged(Simulation& run, RunAhead& ahead) {
 }
 
 int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, OwnDirectory& output,
-              bool film, RunAhead& ahead) {
+              Beside film, RunAhead& ahead) {
   const std::filesystem::path& directory = output.path();
   ahead.take(run.trajectory);
   const Diagnostics diagnostics = judged(run, ahead);
   ahead.leave_out(run.trajectory.size());
   const RememberedExtremes once;  // of the summary and of what is said
   // An earlier run's results stay until these are whole: the disk may be full.
-  const std::string summary =
-      write_data(directory, scene, run, diagnostics, as_typed(arguments.words), ahead, true, [&] {
-        if (!film) output.written().remove_all();
-      });
+  const std::string summary = write_data(directory, scene, run, diagnostics, as_typed(arguments.words), ahead,
+                                         true, [&] { make_room(output.written(), film); });
   write_exports(export_formats_of(arguments), directory, scene, run, diagnostics, arguments);
   report_run(run, diagnostics, arguments);
   if (arguments.json) std::cout << summary;
@@ -84,8 +82,9 @@ int write_end(const Scene& scene, UnfinishedRun& unfinished, Simulation& rest, s
   const Diagnostics& d = whole.diagnostics;
   receipt_errors({{"constraint_error_m", largest_magnitude(d.at("constraint_max_m").values)},
                   {"energy_balance_J", largest_magnitude(d.at("energy_balance_J").values)}});
-  const std::string summary =
-      write_data(arguments.output, scene, whole.run, d, as_typed(arguments.words), ahead, false);
+  const std::string summary = write_data(arguments.output, scene, whole.run, d, as_typed(arguments.words),
+                                         ahead, false, [&] { unfinished.take_places(); });
+  if (!stopped) unfinished.forget();
   report_run(whole.run, d, arguments);
   if (stopped && !arguments.quiet) std::cerr << "unfurl: the same command goes on with it\n";
   if (arguments.json) std::cout << summary;
@@ -93,8 +92,8 @@ int write_end(const Scene& scene, UnfinishedRun& unfinished, Simulation& rest, s
 }
 
 int run_in_parts(const Scene& scene, const std::shared_ptr<const Model>& model, const Arguments& arguments,
-                 OwnDirectory& output, bool film) {
-  UnfinishedRun unfinished(output.written(), scene, model, arguments.checkpoint, !film);
+                 OwnDirectory& output, Beside film) {
+  UnfinishedRun unfinished(output.written(), scene, model, arguments.checkpoint, film);
   Parts parts = parts_for(*model);
   if (arguments.force && !arguments.resume) unfinished.forget();
   if (unfinished.find()) {
@@ -144,16 +143,14 @@ int cmd_run(const Arguments& arguments) {
   output.require_scene(scene_text(scene), arguments.force);
   output.require_files({"scene.toml", "series.csv", "trajectory.csv", "rod_forces.csv", "summary.json"});
   const std::filesystem::path& directory = output.path();
-  const bool film = !directory.empty() && keeps_film(directory, scene, arguments.force);
+  const Beside film =
+      !directory.empty() && keeps_film(directory, scene, arguments.force) ? Beside::film : Beside::nothing;
 
   const InterruptGuard guard;
   const FinishedWork keeping;  // of a motion that is interrupted too
   if (in_parts(scene, arguments)) return run_in_parts(scene, model, arguments, output, film);
-  if (UnfinishedRun::lies_in(directory) && !arguments.force)
-    throw FileError(
-        directory / "unfinished",
-        "holds an unfinished run, which a run with --export, a tolerance or another model cannot go "
-        "on with; use --force to begin anew, or another -o");
+  if (!arguments.force)
+    UnfinishedRun::refuse_in(directory, "a run with --export, a tolerance or another model");
   if (arguments.resume) refuse_to_resume(directory);
   Simulation run = simulate_scene(scene, std::move(model), arguments, false);
   RunAhead beside(arguments.threads);

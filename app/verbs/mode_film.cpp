@@ -14,6 +14,7 @@
 #include "app/verbs/modal_pose.hpp"
 #include "app/verbs/run_figures.hpp"
 #include "app/verbs/scene_run.hpp"
+#include "app/verbs/unfinished_run.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/write.hpp"
 #include "core/system/free_poses.hpp"
@@ -170,6 +171,7 @@ int render_mode(const Arguments& arguments) {
   OwnDirectory output(arguments.output, arguments.force, "run", DirectoryLock::Use::shareable);
   output.require_scene(scene_text(scene), arguments.force);
   const std::string which = "mode " + std::to_string(arguments.mode) + " at " + exact_number(vibration.t);
+  if (!arguments.force) UnfinishedRun::refuse_in(output.path(), "a film");
   FilmFolder folder(output.path(), shown, arguments.gpu, which);
   folder.refuse_to_encode_another(arguments.encode_only);
   if (!folder.holds_this() && !folder.fresh() && !arguments.force)

@@ -10,9 +10,12 @@
 #include <functional>
 #include <iomanip>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "app/output/film_folder.hpp"
 #include "app/output/interrupt.hpp"
+#include "app/output/json_text.hpp"
 #include "app/output/progress.hpp"
 #include "app/output/receipt.hpp"
 #include "app/own_options.hpp"
@@ -26,6 +29,7 @@
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
+#include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "core/study/tolerance.hpp"
@@ -116,8 +120,35 @@ std::string write_data(const std::filesystem::path& directory, const Scene& scen
   PendingFile origin(directory / "scene.toml"), end(directory / "summary.json");
   origin.write(text);
   end.write(json);
+  for (PendingFile* file : {&origin, &end}) file->complete();
+  if (make_room) make_room();
   commit_together(std::array{&origin, &end});
   return json;
+}
+
+namespace {
+
+// Was what DIR has of a run written to its end and judged to its end?
+bool is_whole(const std::filesystem::path& directory) {
+  const auto json =
+      nlohmann::json::parse(read_text_file((directory / "summary.json").string()).text, nullptr, false);
+  const std::string status = text_in(json, "status");
+  const auto forces = json.is_object() ? json.find("forces") : json.end();
+  return !status.empty() && status != to_string(RunStatus::stopped) && forces != json.end() &&
+         forces->is_object() && forces->contains("unique_rods") && !(*forces)["unique_rods"].is_null();
+}
+
+}  // namespace
+
+void make_room(WrittenFiles& written, Beside beside, Unfinished unfinished) {
+  constexpr std::array of_run{"scene.toml", "series.csv", "trajectory.csv", "rod_forces.csv", "summary.json"};
+  const bool film = beside == Beside::film, whole = film && is_whole(written.directory());
+  written.remove_all([&](const std::string& name) {
+    return whole
+               ? !name.starts_with("unfinished/") || unfinished == Unfinished::stays
+               : std::ranges::find(of_run, name) != of_run.end() || (film && FilmFolder::is_of_film(name)) ||
+                     (unfinished == Unfinished::stays && name.starts_with("unfinished/"));
+  });
 }
 
 std::vector<std::string> warnings_about_text(const Scene& scene) {

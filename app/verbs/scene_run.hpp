@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/command.hpp"
+#include "app/output/written_files.hpp"
 #include "app/verbs/run_ahead.hpp"
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/export/formats.hpp"
@@ -32,6 +33,13 @@ Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
                        const Diagnostics& diagnostics, const std::string& command, RunAhead& ahead,
                        bool tables = true, const std::function<void()>& make_room = {});
+
+// What the run before left in DIR goes, but for the five files of a run, which new ones replace at one
+// moment, and `unfinished`, where a run goes on. A film that shows the motion stays: all of it, and what was
+// exported beside it unless that run was stopped, whose exports end early.
+enum class Beside { nothing, film };
+enum class Unfinished { goes, stays };
+void make_room(WrittenFiles& written, Beside beside, Unfinished unfinished = Unfinished::goes);
 
 // The formats that --export names, in that order; throws UsageError with the nearest name of an unknown one.
 std::vector<const ExportFormat*> export_formats_of(const Arguments& arguments);

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* magic = "unfurl checkpoint 1\n";
-constexpr const char* tables[] = {"series.csv", "trajectory.csv", "rod_forces.csv"};
+const std::string tables[] = {"series.csv", "trajectory.csv", "rod_forces.csv"};
 
 std::string sum_of(const std::string& bytes) {
   Checksum sum;
@@ -31,16 +31,23 @@ std::string sum_of(const std::string& bytes) {
 }  // namespace
 
 UnfinishedRun::UnfinishedRun(WrittenFiles& written, const Scene& scene, std::shared_ptr<const Model> model,
-                             double seconds, bool alone)
+                             double seconds, Beside beside)
     : written_(written),
       scene_(scene),
       digest_(std::move(model), scene.solver),
       seconds_(seconds),
-      alone_(alone) {}
+      beside_(beside) {}
 
 bool UnfinishedRun::lies_in(const fs::path& directory) {
   std::error_code error;
   return fs::exists(directory / "unfinished" / "checkpoint", error);
+}
+
+void UnfinishedRun::refuse_in(const fs::path& directory, const std::string& who) {
+  if (lies_in(directory))
+    throw FileError(directory / "unfinished", "holds an unfinished run, which " + who +
+                                                  " cannot go on with; use --force to begin anew, or "
+                                                  "another -o");
 }
 
 // Another build may step otherwise.
@@ -89,8 +96,8 @@ void UnfinishedRun::keep_foreign_aside() {
   std::error_code error;
   const auto there = [&](const fs::path& path) { return fs::exists(fs::symlink_status(path, error)); };
   bool foreign = there(folder()) && !fs::is_directory(fs::symlink_status(folder(), error));
-  for (const char* name : {tables[0], tables[1], tables[2], "checkpoint"})
-    foreign = foreign || (there(folder() / name) && !written_.ours(std::string("unfinished/") + name));
+  for (const std::string& name : {tables[0], tables[1], tables[2], std::string("checkpoint")})
+    foreign = foreign || (there(folder() / name) && !written_.ours("unfinished/" + name));
   if (foreign) written_.keep_aside("unfinished");
 }
 
@@ -99,7 +106,7 @@ void UnfinishedRun::keep_foreign_aside() {
 void UnfinishedRun::take_back(const RunTables::Sizes& sizes) const {
   const std::uint64_t size[] = {sizes.series, sizes.trajectory, sizes.rod_forces};
   std::error_code error;
-  const bool taken = alone_ && fs::exists(written_.directory() / "summary.json", error);
+  const bool taken = beside_ == Beside::nothing && fs::exists(written_.directory() / "summary.json", error);
   for (std::size_t k = 0; k < std::size(tables); ++k) {
     const fs::path path = folder() / tables[k], place = written_.directory() / tables[k];
     if (!taken && !fs::exists(path, error) && fs::exists(place, error)) fs::rename(place, path, error);
@@ -114,13 +121,13 @@ void UnfinishedRun::begin() {
   std::error_code error;
   fs::create_directory(folder(), error);
   if (error) throw FileError(folder(), error.value());
-  for (const char* name : tables) written_.grows(std::string("unfinished/") + name);
+  for (const std::string& name : tables) written_.grows("unfinished/" + name);
   written_.grows("unfinished/checkpoint");
   tables_ = std::make_unique<RunTables>(folder());
 }
 
 void UnfinishedRun::forget() {
-  for (const char* name : tables) written_.remove(std::string("unfinished/") + name);
+  for (const std::string& name : tables) written_.remove("unfinished/" + name);
   written_.remove("unfinished/checkpoint");
   std::error_code error;
   if (!fs::is_symlink(fs::symlink_status(folder(), error))) {
@@ -192,9 +199,6 @@ Digest UnfinishedRun::finish(Simulation& rest, std::size_t first) {
   if (!digest_.all_trusted()) tables_->cut(good_);
   tables_->flush_to_disk();
   tables_.reset();
-  if (alone_) written_.remove_all("unfinished");
-  for (const char* name : tables) move_into_place(folder() / name, written_.directory() / name);
-  forget();
   return whole(rest);
 }
 
@@ -205,19 +209,25 @@ Digest UnfinishedRun::interrupt(Simulation& rest, std::size_t first) {
   const RunTables::Sizes sizes = digest_.all_trusted() ? tables_->sizes() : good_;
   tables_->flush_to_disk();
   const std::uint64_t size[] = {sizes.series, sizes.trajectory, sizes.rod_forces};
-  PendingFile copies[] = {PendingFile(written_.directory() / tables[0]),
-                          PendingFile(written_.directory() / tables[1]),
-                          PendingFile(written_.directory() / tables[2])};
   for (std::size_t k = 0; k < std::size(tables); ++k) {
+    PendingFile& copy =
+        *copies_.emplace_back(std::make_unique<PendingFile>(written_.directory() / tables[k]));
     std::error_code error;
-    fs::copy_file(folder() / tables[k], copies[k].name(), fs::copy_options::overwrite_existing, error);
-    if (!error) fs::resize_file(copies[k].name(), size[k], error);
-    if (error) throw FileError(copies[k].target(), error.value());
-    copies[k].complete();
+    fs::copy_file(folder() / tables[k], copy.name(), fs::copy_options::overwrite_existing, error);
+    if (!error) fs::resize_file(copy.name(), size[k], error);
+    if (error) throw FileError(copy.target(), error.value());
+    copy.complete();
   }
-  if (alone_) written_.remove_all("unfinished");
-  commit_together(std::array{&copies[0], &copies[1], &copies[2]});
   return whole(rest);
+}
+
+void UnfinishedRun::take_places() {
+  make_room(written_, beside_, Unfinished::stays);
+  if (!copies_.empty())
+    return commit_together(std::array{copies_[0].get(), copies_[1].get(), copies_[2].get()});
+  // Tables without a summary are those of a run that goes on (take_back()).
+  move_into_place(folder(), tables, written_.directory(), [&] { written_.remove("summary.json"); });
+  written_.remove("unfinished/checkpoint");
 }
 
 }  // namespace unfurl

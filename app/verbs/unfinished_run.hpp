@@ -7,9 +7,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/output/written_files.hpp"
+#include "app/verbs/scene_run.hpp"
 #include "core/diagnostics/run_digest.hpp"
+#include "core/export/atomic_file.hpp"
 #include "core/export/run_tables.hpp"
 #include "core/scene/scene.hpp"
 #include "render/image/task_queue.hpp"
@@ -21,12 +24,13 @@ namespace unfurl {
 // run of one part leaves no trace of it.
 class UnfinishedRun {
  public:
-  // seconds: between two checkpoints; alone: what else we wrote into the directory goes when the tables get
-  // their places.
+  // seconds: between two checkpoints; beside: what stays when the tables get their places.
   UnfinishedRun(WrittenFiles& written, const Scene& scene, std::shared_ptr<const Model> model, double seconds,
-                bool alone);
+                Beside beside);
 
   static bool lies_in(const std::filesystem::path& directory);
+  // Throws FileError where one does that `who` ("a film") cannot go on with.
+  static void refuse_in(const std::filesystem::path& directory, const std::string& who);
   // Reads the checkpoint, if there is one. Throws FileError where it is of another run or damaged.
   bool find();
   Archive& stepper() { return *archived_; }  // that was found
@@ -35,10 +39,13 @@ class UnfinishedRun {
   bool any() const { return tables_ != nullptr; }  // a part was taken or found
   // The part's diagnosis, rows and checkpoint are made `beside` what comes next; one part at a time.
   void take(Stepper::Window window, Stepper& stepper, TaskQueue& beside);
-  // All of the run, its tables in their places and nothing left behind; `rest`: what no part had.
+  // All of the run; `rest`: what no part had.
   Digest finish(Simulation& rest, std::size_t first);
   // The same of a run that was interrupted, which can still go on from its last part.
   Digest interrupt(Simulation& rest, std::size_t first);
+  // After either: the tables get their places and, of a run that is done, the checkpoint goes. What is killed
+  // between the two goes on all the same.
+  void take_places();
   void forget();  // what was found
 
  private:
@@ -62,12 +69,13 @@ class UnfinishedRun {
   RunDigest digest_;
   double seconds_, t_ = 0;
   double cpu_s_ = 0;  // of earlier processes
-  bool alone_;
+  Beside beside_;
   std::unique_ptr<RunTables> tables_;
   RunTables::Sizes good_;  // of what can be trusted
   std::optional<Archive> archived_;
   std::string fingerprint_;
-  std::string last_;  // checkpoint behind the last part
+  std::string last_;                                  // checkpoint behind the last part
+  std::vector<std::unique_ptr<PendingFile>> copies_;  // of the tables of a run that was interrupted
   std::chrono::steady_clock::time_point written_at_ = std::chrono::steady_clock::now();
 };
 

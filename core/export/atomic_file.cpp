@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <mutex>
 #include <random>
 #include <system_error>
@@ -228,9 +229,8 @@ PendingFile::PendingFile(std::filesystem::path target) : target_(std::move(targe
 
 PendingFile::~PendingFile() {
   forget(temporary_.native());
-  if (file_ < 0) return;
-  ::close(file_);
-  ::unlink(temporary_.c_str());
+  if (file_ >= 0) ::close(file_);
+  if (!placed_) ::unlink(temporary_.c_str());
 }
 
 void PendingFile::write(std::span<const std::byte> bytes) {
@@ -250,42 +250,46 @@ void PendingFile::complete(Flush flush) {
   if (file_watcher.load()) checksum_ = checksum_of_file(temporary_);
 }
 
-void PendingFile::take_place() {
+void PendingFile::announce() {
   struct stat before {};
   if (::lstat(target_.c_str(), &before) == 0 && S_ISREG(before.st_mode))
     ::fchmod(file_, before.st_mode & 0777);  // where that may not be, it has those of a new file
   if (FileWatcher* watcher = file_watcher; watcher)
     watcher->before_file(target_, checksum_.empty() ? checksum_of_file(temporary_) : checksum_);
   // Some file systems report a full disk only at close.
-  if (::close(std::exchange(file_, -1)) != 0) {
-    const int error = errno;
-    ::unlink(temporary_.c_str());
-    throw FileError(target_, error);
-  }
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    const int error = errno;
-    ::unlink(temporary_.c_str());
-    throw FileError(target_, error);
-  }
+  if (::close(std::exchange(file_, -1)) != 0) throw FileError(target_, errno);
+}
+
+void PendingFile::take_place() {
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) throw FileError(target_, errno);
+  placed_ = true;
 }
 
 void PendingFile::commit(Flush flush) {
   complete(flush);
+  announce();
   take_place();
   if (flush == Flush::at_once) flush_directory_of(target_);
 }
 
 void commit_together(std::span<PendingFile* const> files) {
   for (PendingFile* file : files) file->complete();
+  for (PendingFile* file : files) file->announce();
   for (PendingFile* file : files) file->take_place();
   if (!files.empty()) flush_directory_of(files.front()->target());
 }
 
-void move_into_place(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (FileFinisher* finisher = file_finisher(); finisher) finisher->finish(from, to);
-  if (FileWatcher* watcher = file_watcher; watcher) watcher->before_file(to, checksum_of_file(from));
-  if (std::rename(from.c_str(), to.c_str()) != 0) throw FileError(to, errno);
-  flush_directory_of(to);
+void move_into_place(const std::filesystem::path& from, std::span<const std::string> names,
+                     const std::filesystem::path& to, const std::function<void()>& before) {
+  for (const std::string& name : names) {
+    if (FileFinisher* finisher = file_finisher(); finisher) finisher->finish(from / name, to / name);
+    if (FileWatcher* watcher = file_watcher; watcher)
+      watcher->before_file(to / name, checksum_of_file(from / name));
+  }
+  before();
+  for (const std::string& name : names)
+    if (std::rename((from / name).c_str(), (to / name).c_str()) != 0) throw FileError(to / name, errno);
+  if (!names.empty()) flush_directory_of(to / names.front());
 }
 
 FileFinisher* finish_files(FileFinisher* finisher) {

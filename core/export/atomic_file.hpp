@@ -70,14 +70,16 @@ class PendingFile {
 
  private:
   friend void commit_together(std::span<PendingFile* const> files);
-  void take_place();
+  void announce();    // to who watches files; its bytes are closed
+  void take_place();  // what was announced
   std::filesystem::path target_, temporary_;
   std::string checksum_;
-  bool complete_ = false;
+  bool complete_ = false, placed_ = false;
   int file_ = -1;
 };
 
-// Files of one directory get their names in this order when all are on the disk: one wait for the directory.
+// Files of one directory get their names in this order, at one moment, when all are on the disk and those who
+// watch files know of all: a kill finds the old ones or the new ones. One wait for the directory.
 void commit_together(std::span<PendingFile* const> files);
 
 // Is told of every file just before it takes its place, with the checksum (core/export/checksum.hpp) of its

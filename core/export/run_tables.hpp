@@ -4,7 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <span>
+#include <string>
 
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/text/archive.hpp"
@@ -34,7 +37,9 @@ class RunTables {
   std::unique_ptr<Files> files_;
 };
 
-// Gives a whole file its name: completed, entered in the list of what was written, as PendingFile::commit().
-void move_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
+// Gives whole files their names in another directory, as commit_together(): completed, entered in the list of
+// what was written, then all at one moment, `before` which something may be done.
+void move_into_place(const std::filesystem::path& from, std::span<const std::string> names,
+                     const std::filesystem::path& to, const std::function<void()>& before);
 
 }  // namespace unfurl

@@ -228,6 +228,17 @@ TEST_CASE("a checkpoint of another run is refused with one sentence and left alo
   Words exported = run_of("hoop6", out, long_one);
   exported.insert(exported.end(), {"--export", "npy"});
   CHECK(run_program(exported).code == 5);
+  // A film, of this scene or another, whole or of a mode, would take its place.
+  for (const Words& film : {Words{"render", "hoop6", "--set", "solver.step=1e-5"},
+                            Words{"render", "four_bar"}, Words{"render", "four_bar", "--mode", "1"}}) {
+    Words words = film;
+    words.insert(words.end(), {"-o", out, "--size", "64x48", "--fps", "2", "--quiet"});
+    const auto refused = run_program(words);
+    CHECK(refused.code == 5);
+    CHECK(refused.err.find("holds an unfinished run, which a film cannot go on with") != std::string::npos);
+    CHECK(fs::exists(out + "/unfinished/checkpoint"));
+    CHECK_FALSE(fs::exists(out + "/film.json"));
+  }
   // Cut short, or a byte of it changed.
   const std::string path = out + "/unfinished/checkpoint", text = file_text(path);
   fs::resize_file(path, text.size() - 9);

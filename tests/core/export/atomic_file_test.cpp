@@ -134,6 +134,33 @@ TEST_CASE("files that are written together get their names when all are whole, o
   CHECK(std::distance(fs::directory_iterator(scratch.path), {}) == 2);
 }
 
+// What is slow, the checksums of what is replaced and the list of what is written, comes before the first.
+TEST_CASE("files that are written together are all old until all are known to who watches") {
+  const ScratchFolder scratch;
+  const std::array paths{scratch.path / "a.txt", scratch.path / "b.txt", scratch.path / "c.txt"};
+  for (const fs::path& path : paths) write_file_atomically(path, "old");
+  struct Watcher final : FileWatcher {
+    std::array<fs::path, 3> paths;
+    int told = 0, old = 0;
+    void before_file(const fs::path&, const std::string&) override {
+      ++told;
+      for (const fs::path& path : paths) old += content(path) == "old" ? 1 : 0;
+    }
+  } watcher;
+  watcher.paths = paths;
+  FileWatcher* const before = watch_files(&watcher);
+  {
+    PendingFile a(paths[0]), b(paths[1]), c(paths[2]);
+    for (PendingFile* file : {&a, &b, &c}) file->write("new");
+    commit_together(std::array{&a, &b, &c});
+  }
+  watch_files(before);
+  CHECK(watcher.told == 3);
+  CHECK(watcher.old == 9);
+  for (const fs::path& path : paths) CHECK(content(path) == "new");
+  CHECK(std::distance(fs::directory_iterator(scratch.path), {}) == 3);
+}
+
 TEST_CASE("a pipe is not replaced by a file") {
   const ScratchFolder scratch;
   const fs::path pipe = scratch.path / "pipe";
