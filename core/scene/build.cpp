@@ -449,6 +449,8 @@ Structure build_structure(const Scene& scene) {
     refuse(scene, error);
   }
   for (const SceneProblem& warning : scene.warnings) structure.notes.push_back(problem_text(warning));
+  for (const SceneProblem& warning : scene.warnings_on_path)
+    structure.notes_on_path.push_back(problem_text(warning));
   structure.notes.insert(structure.notes.end(), moves.begin(), moves.end());
   return structure;
 }

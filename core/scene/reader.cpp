@@ -127,15 +127,18 @@ void read_deployment(TableReader& root, const TomlTree& tree, Scene& scene, Scen
 
 // What a person sets of the solver on a command line that another key leaves without meaning. In a scene it
 // may be there for other runs of it.
-void warn_of_idle_steps(TableReader& table, const SolverOptions& solver) {
+void warn_of_idle_steps(TableReader& table, const SolverOptions& solver, SceneNotes& notes) {
+  const std::vector<std::string_view> of_methods{"method",    "stages",  "nodes", "constraints_at",
+                                                 "baumgarte", "rho_inf", "turn",  "adaptive"};
+  const std::string on_path = "whose motion is at round-off whatever the method";
   if (solver.model == "path") {
-    table.warn_overridden({"method", "stages", "nodes", "constraints_at", "baumgarte", "rho_inf", "turn"},
-                          "with model = 'path', whose motion is at round-off whatever the method");
+    table.warn_overridden(of_methods, "with model = 'path', " + on_path);
   } else if (solver.tolerance > 0 && find_method(solver.method)) {
     constexpr const char* picks = "with tolerance > 0, which picks stages and step";
     table.warn_overridden({"step"}, picks);
     if (order_depends_on_stages(solver)) table.warn_overridden({"stages"}, picks);
   }
+  notes.on_path = table.overridden_among(of_methods, "where the path is solved, as here, " + on_path);
 }
 
 void read_solver(TableReader& root, const TomlTree& tree, Scene& scene, SceneNotes& notes) {
@@ -147,7 +150,7 @@ void read_solver(TableReader& root, const TomlTree& tree, Scene& scene, SceneNot
   if (scene.solver.adaptive && scene.solver.tolerance > 0)
     notes.warnings.push_back({found->find("adaptive")->where, table.key("adaptive"),
                               "does nothing with tolerance > 0, which picks steps that are all equal"});
-  warn_of_idle_steps(table, scene.solver);
+  warn_of_idle_steps(table, scene.solver, notes);
   const Family* family = find_family(scene.kind);
   if (!table.has("end_time") && ((family && family->deploys) || !scene.deployment.terms.empty()))
     scene.solver.end_time = time_to_deploy;
@@ -297,6 +300,7 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   root.finish();
   if (!notes.problems.empty()) refuse(notes.problems);
   scene.warnings = std::move(notes.warnings);
+  scene.warnings_on_path = std::move(notes.on_path);
   scene.locations = std::move(notes.locations);
   scene.units = std::move(notes.units);
   scene.files = std::move(notes.files);

@@ -42,6 +42,7 @@ struct Scene {
   std::map<std::string, double> variables;          // [variables], worked out
   std::set<std::string> worked_out;                 // dotted keys whose values come of expressions or braces
   std::vector<SceneProblem> warnings;               // what is given and does nothing
+  std::vector<SceneProblem> warnings_on_path;       // and what does nothing where the path is solved
   std::map<std::string, SourceLocation> locations;  // dotted key -> where it was given, for later messages
   std::map<std::string, std::string> units;         // of the keys that overrides change: dotted key -> unit
   std::set<std::string> files;                      // that it names, as paths

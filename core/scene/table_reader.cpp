@@ -203,14 +203,18 @@ void TableReader::warn_idle(std::string_view name, const std::string& reason, bo
   notes_.warnings.push_back({table_->find(name)->where, key(name), "does nothing " + reason});
 }
 
-void TableReader::warn_overridden(std::initializer_list<std::string_view> keys, std::string_view reason) {
-  for (const std::string_view name : keys) {
-    if (!has(name) || !overridden(*table_->find(name))) continue;
-    const auto same = [&](const SceneProblem& warning) { return warning.key == key(name); };
-    if (std::ranges::none_of(notes_.warnings, same))
-      notes_.warnings.push_back(
-          {table_->find(name)->where, key(name), "does nothing " + std::string(reason)});
-  }
+std::vector<SceneProblem> TableReader::overridden_among(const std::vector<std::string_view>& keys,
+                                                        std::string_view reason) const {
+  std::vector<SceneProblem> found;
+  for (const std::string_view name : keys)
+    if (has(name) && overridden(*table_->find(name)) &&
+        std::ranges::find(notes_.warnings, key(name), &SceneProblem::key) == notes_.warnings.end())
+      found.push_back({table_->find(name)->where, key(name), "does nothing " + std::string(reason)});
+  return found;
+}
+
+void TableReader::warn_overridden(const std::vector<std::string_view>& keys, std::string_view reason) {
+  for (SceneProblem& found : overridden_among(keys, reason)) notes_.warnings.push_back(std::move(found));
 }
 
 std::map<std::string, SourceLocation, std::less<>> TableReader::places() const {

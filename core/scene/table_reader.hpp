@@ -19,6 +19,7 @@ namespace unfurl {
 struct SceneNotes {
   std::vector<SceneProblem> problems;
   std::vector<SceneProblem> warnings;               // what is given and does nothing
+  std::vector<SceneProblem> on_path;                // and what does nothing where the path is solved
   std::map<std::string, SourceLocation> locations;  // dotted key -> place of its value
   std::map<std::string, std::string> units;         // of what overrides change: dotted key -> unit
   std::set<std::string> files;                      // that were read beside the scene's own
@@ -60,8 +61,10 @@ class TableReader {
   // The same of one key and for this reason; what a file may keep (`may_stand`) is told where it is set
   // alone.
   void warn_idle(std::string_view name, const std::string& reason, bool may_stand);
-  // Warns that those of these keys that were set on a command line do nothing `reason`, if that was not said.
-  void warn_overridden(std::initializer_list<std::string_view> keys, std::string_view reason);
+  // That those of these keys that were set on a command line do nothing `reason`, if that was not said.
+  std::vector<SceneProblem> overridden_among(const std::vector<std::string_view>& keys,
+                                             std::string_view reason) const;
+  void warn_overridden(const std::vector<std::string_view>& keys, std::string_view reason);  // of that
 
   std::string key(std::string_view name) const;  // dotted
   bool has(std::string_view name) const { return table_ && table_->find(name); }

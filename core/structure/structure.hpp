@@ -298,7 +298,8 @@ struct Structure {
   std::vector<LoadCopy> load_copies;
   std::vector<ShownLine> lines = {};
   std::vector<ReportedSurface> surfaces = {};
-  std::vector<std::string> notes = {};  // what was changed of the given: warnings for whoever runs it
+  std::vector<std::string> notes = {};          // what was changed of the given: warnings for whoever runs it
+  std::vector<std::string> notes_on_path = {};  // and for whoever runs it along its path
   double sectors = 1.0;  // how many times what is solved makes the whole: energies are reported of the whole
 };
 
