@@ -156,7 +156,7 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
       return std::pair(scattered(a) % pieces, a) < std::pair(scattered(b) % pieces, b);
     });
   const PathSweep along_path(plan);
-  std::size_t done = 0;
+  std::size_t done = 0, looked_at = 0;                // of these, what does nothing is known
   using Words = std::pair<std::size_t, std::string>;  // of the first of some points
   std::map<std::string, Words> moved, why;            // by the outcome
   std::map<std::size_t, std::vector<std::string>> warned;
@@ -186,6 +186,7 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
     if (!of_point.moved.empty()) keep(moved, "", {open[i], of_point.moved});
     if (!of_point.why.empty()) keep(why, outcome, {open[i], of_point.why});
     if (!of_point.warnings.empty()) warned.emplace(open[i], std::move(of_point.warnings));
+    if (of_point.idle) ++looked_at;
     if (of_point.idle && idle)
       std::erase_if(*idle, [&](const std::string& text) {
         return std::ranges::find(*of_point.idle, text) == of_point.idle->end();
@@ -199,9 +200,11 @@ Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks
   const auto text = [&](const Words& words) { return point_text(plan, words.first) + ": " + words.second; };
   for (const auto& [outcome, words] : moved) sweep.moved = text(words);
   for (const auto& [outcome, words] : why) sweep.why[outcome] = text(words);
-  const std::string where = done == plan.points() ? "every point"
-                            : done == 1           ? "the one point computed now"
-                                                  : "all " + std::to_string(done) + " points computed now";
+  const std::string computed =
+      std::string(done < plan.points() ? " computed now" : "") + (looked_at < done ? " with a run" : "");
+  const std::string where = looked_at == plan.points() ? "every point"
+                            : looked_at == 1           ? "the one point" + computed
+                                             : "all " + std::to_string(looked_at) + " points" + computed;
   for (const std::string& words : idle.value_or(std::vector<std::string>()))
     sweep.warnings.push_back("at " + where + ": " + words);
   if (!warned.empty())

@@ -153,6 +153,14 @@ TEST_CASE("the stiffness that is driven is one that acts") {
   CHECK(names_of(extremes_of(none)) == Names{"mass_ratio", "force"});
 }
 
+// A spring along a rigid rod loads it and moves nothing, however stiff it is.
+TEST_CASE("the stiffness that is driven is one that moves something") {
+  const std::string along_rod = "forces[1].nodes=[\"O\",\"A\"]";
+  CHECK(extremes_of(source_of(swing, {along_rod})).at("stiffness").label == "forces[2].stiffness");
+  CHECK(names_of(extremes_of(source_of(swing, {along_rod, "forces[2].nodes=[\"B\",\"C\"]"}))) ==
+        Names{"mass_ratio", "force"});
+}
+
 TEST_CASE("a stiffness that means nothing in the scene is not the one that is driven") {
   const std::string latch =
       "[structure]\nkind = 'hoop'\n[[forces]]\nkind = 'latch'\nstiffness = 1000\n[[forces]]\nkind = "

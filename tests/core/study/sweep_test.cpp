@@ -81,6 +81,30 @@ end_time = 0.1
   CHECK(told("gravity.acceleration[2]=0,-1,-2") == std::vector<std::string>{damping});
 }
 
+TEST_CASE("what does nothing is told of the points that have a run") {
+  const auto text = std::make_shared<const std::string>(R"(
+variables.L = 1
+structure.kind = "custom"
+structure.nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = ["=L", 0, 0]}]
+structure.rods = [{nodes = ["O", "A"], mass = 1}]
+[[forces]]
+kind = "joint_damping"
+nodes = ["A"]
+damping = 0.1
+[solver]
+end_time = 0.1
+)");
+  const auto told = [&](const char* axis) {
+    SweepPlan plan{{"one.toml", {}, text, "."}, {parse_axis(axis)}, {}, {}};
+    plan.measures.push_back(find_measure("final:kinetic_energy_J"));
+    Journal journal({}, plan.columns(), plan.axes.size(), plan.number_columns());
+    return run_sweep(plan, journal, {}).warnings.at(0);
+  };
+  CHECK(told("variables.L=1,2").starts_with("at every point: "));
+  CHECK(told("variables.L=0,1,2").starts_with("at all 2 points with a run: "));  // a rod of no length is none
+  CHECK(told("variables.L=0,1").starts_with("at the one point with a run: "));
+}
+
 TEST_CASE("a range of one is its beginning") {
   CHECK(parse_axis("a=2.5:7:1").numbers == std::vector<double>{2.5});
   CHECK(parse_axis("a=2.5:7:1:log").numbers == std::vector<double>{2.5});
