@@ -56,11 +56,11 @@ int cmd_reproduce(const Arguments& arguments) {
     std::cerr << "unfurl: interrupted before there was anything to write\n";
     return exit_interrupted;
   }
+  session.write("runs.csv", csv_text(runs_table(r)));
   const ReproductionPictures pictures{session.write(reproduced_poses_figure(r)),
                                       session.write(reproduced_constraint_figure(r)),
                                       session.write(reproduced_trajectory_figure(r))};
   const Report report = reproduction_report(r, pictures);
-  session.write("runs.csv", csv_text(runs_table(r)));
   session.write("report.md", report_markdown(report));
   session.write("report.html", report_html(report, session.directory()));
   for (const Check& check : r.checks)

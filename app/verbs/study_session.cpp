@@ -217,7 +217,8 @@ std::string StudySession::write(const Figure& figure) {
 int finish(bool complete, const Arguments& arguments, const std::string& sentence) {
   if (!arguments.quiet && !sentence.empty()) std::cerr << sentence << "\n";
   if (complete) return exit_ok;
-  std::cerr << "unfurl: interrupted; finished points are kept, the same command does the rest\n";
+  std::cerr << "unfurl: interrupted; finished points are kept, the same command "
+            << (arguments.force ? "without --force " : "") << "does the rest\n";
   return exit_interrupted;
 }
 

@@ -422,7 +422,10 @@ bool is_measured_model(const std::vector<std::string>& row) {
     const double x = number_of(cell);
     return x >= 0 && x < 1e9 && x == std::floor(x);
   };
-  return counts(row[2]) && counts(row[3]) && (row[11] == "0" || row[11] == "1") &&
+  const std::string& outcome = row[1];
+  const bool known = outcome.empty() || outcome.starts_with("not possible: ") ||
+                     outcome == to_string(RunStatus::completed) || outcome == to_string(RunStatus::deployed);
+  return known && counts(row[2]) && counts(row[3]) && (row[11] == "0" || row[11] == "1") &&
          std::ranges::none_of(row.begin() + 4, row.begin() + 8,
                               [](const std::string& cell) { return number_of(cell) < 0; });
 }

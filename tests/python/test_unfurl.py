@@ -179,6 +179,9 @@ def test_sweeps_take_words_truth_values_and_lists():
     assert table["solver.adaptive"] == ["true", "false"] * 2
     one = unfurl.Scene("pendulum", set={"solver.end_time": 0.1, "solver.method": "rk4"}).run()
     assert table["final_kinetic_energy_J"][3] == one.measure("final:kinetic_energy_J")
+    bars = unfurl.Scene("four_bar", set={"solver.end_time": 0.1, "structure.youngs_modulus": 7e10})
+    table = bars.sweep({"structure.rod_model": ["quasi-static", "rigid"]}, "energy")
+    assert table["structure.rod_model"] == ["quasi-static", "rigid"]
     pulls = [[0, 0, -1], (0, 0, -4)]
     table = swing.sweep({"gravity.acceleration": pulls}, ["energy"])
     for pull, energy in zip(pulls, table["energy_J"]):

@@ -54,7 +54,7 @@ def _axis(values: Any) -> list:
         return not isinstance(x, (str, bool, np.bool_)) and (not isinstance(x, Iterable) or np.ndim(x) == 0)
 
     def is_word(x: Any) -> bool:
-        return isinstance(x, str) and re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", x) is not None and x not in ("true", "false", "inf", "nan")
+        return isinstance(x, str) and re.fullmatch("[A-Za-z_][A-Za-z0-9_-]*", x) is not None and x not in ("true", "false", "inf", "nan")
 
     if all(map(is_number, values)):
         return [float(x) for x in values]

@@ -235,6 +235,13 @@ TEST_CASE("a comparison of models goes on from the rows that are kept") {
   Journal kept(file, models_columns(), 1, models_number_columns(), is_measured_model);
   REQUIRE(kept.size() == 3);
   const auto whole = models_table(compare_models(source, 1, {})).rows;
+  for (const char* outcome :
+       {"completed", "deployed", "not possible: no modulus", "banana", "failed", "stopped"}) {
+    std::vector<std::string> row = whole.front();
+    row[1] = outcome;
+    INFO(outcome);
+    CHECK(is_measured_model(row) == (std::string("cdn").find(outcome[0]) != std::string::npos));
+  }
   const auto all = [&] {
     Journal more({}, models_columns(), 1);
     more.take_in(file);
