@@ -269,9 +269,9 @@ bool MemberFinder::apart(const SceneElement& element, const std::string& key, in
   return false;
 }
 
-// What is measured between held nodes, and lengths of rigid rods, along which a force is idle only until they
-// give.
-bool MemberFinder::stays(const Measure& term, bool of_force) const {
+// What is measured between held nodes, and lengths of rigid rods, along which what acts is idle only until
+// they give or are warmed.
+bool MemberFinder::stays(const Measure& term, bool acts) const {
   const auto& n = term.nodes;
   const auto is_held = [&](int node) {
     return std::ranges::any_of(structure_.constraints, [&](const Constraint& c) {
@@ -279,7 +279,7 @@ bool MemberFinder::stays(const Measure& term, bool of_force) const {
     });
   };
   if (!n.empty() && std::ranges::all_of(n, is_held)) return true;
-  return !of_force && term.kind == MeasureKind::length &&
+  return !acts && term.kind == MeasureKind::length &&
          std::ranges::any_of(structure_.rods, [&](const Rod& rod) {
            const bool ends = (rod.a == n[0] && rod.b == n[1]) || (rod.a == n[1] && rod.b == n[0]);
            return ends && !rod.gives && rod.expansion == 0;
@@ -308,8 +308,8 @@ bool MemberFinder::cancels(const Measure& sum) const {
 
 bool MemberFinder::varies(const SceneElement& element, const std::string& key, const Measure& sum) {
   Measure rest = sum;
-  const bool of_force = element.key.starts_with("forces");
-  std::erase_if(rest.terms, [&](const MeasureTerm& term) { return stays(term.measure, of_force); });
+  const bool acts = key == "terms";
+  std::erase_if(rest.terms, [&](const MeasureTerm& term) { return stays(term.measure, acts); });
   if (!rest.terms.empty() && !cancels(rest)) return true;
   problem(element, key,
           std::string("is the same whatever moves: ") +

@@ -75,7 +75,7 @@ class MemberFinder {
     std::string whole;
     int first, last;  // parts
   };
-  bool stays(const Measure& term, bool of_force) const;
+  bool stays(const Measure& term, bool acts) const;
   bool cancels(const Measure& sum) const;
   std::vector<int> rods_matching(const std::string& pattern) const;
   Vec3 start_of(int node) const { return start_.segment<3>(3 * node); }

@@ -224,11 +224,12 @@ double MeasureFunction::value_and_gradient(const double* q, double* gradient, co
 double MeasureFunction::value_and_gradient(const double* q, const double* v, double* gradient,
                                            const Moment& at, int followed) const {
   const double value = value_and_gradient(q, gradient, at, followed);
-  turn_in_line(q, v, 1.0, gradient);
+  turn_in_line(q, v, at.t > 0 ? 1.0 : -1.0, gradient);
   return value;
 }
 
-// A moment ago d_1 x d_2 was against its rate now. What turns slower than this rests.
+// A moment ago d_1 x d_2 was against its rate now; where a motion begins (scale -1) it will be along it. What
+// turns slower than this rests.
 void MeasureFunction::turn_in_line(const double* q, const double* v, double scale, double* gradient) const {
   constexpr double rounding = 1e-9, rest = 1e-12;  // shares of the velocities; rad/s
   each_term([&](const MeasureFunction& term, double c, std::size_t first, int) {

@@ -59,10 +59,11 @@ TEST_CASE("sums whose terms cancel or stay are refused with their place") {
     INFO(terms);
     CHECK(error_of(bars + "[[forces]]\n" + with_terms(terms)).find("forces[0]." + stay) != std::string::npos);
   }
-  for (const char* terms : {"'1 length O A'", "'1 length A O', '3 length A B'", "'1 length P Q'"}) {
-    INFO(terms);
-    CHECK(error_of(bars + "[[constraints]]\nkind = 'combination'\nterms = [" + terms + "]\n")
-              .find("constraints[0]." + stay) != std::string::npos);
+  for (const char* term : {"1 length O A", "-2 length A B", "1 length P Q"}) {
+    INFO(term);
+    CHECK(error_of(bars + "[deployment]\nmeasure = ['" + term + "', '3 length A B']\ndeployed = 9\n")
+              .find("deployment.measure: is the same whatever moves: rigid rods keep their lengths") !=
+          std::string::npos);
   }
 }
 
