@@ -76,7 +76,7 @@ void Journal::begin_file() {
   try {
     take_lock(::fileno(file_), path_);
   } catch (...) {
-    std::fclose(file_);
+    std::fclose(std::exchange(file_, nullptr));
     throw;
   }
 }

@@ -149,16 +149,32 @@ double heap_in_use() {
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
-// Where the nodes that both runs show begin among their positions: segments add nodes, a model without nets
-// has fewer.
+// Nodes within rods that were cut, with the parts of their rod.
+std::map<int, int> within_rods(const Structure& structure) {
+  std::map<int, int> nodes;
+  for (std::size_t r = 1; r < structure.rods.size(); ++r)
+    if (const Rod& rod = structure.rods[r], &before = structure.rods[r - 1];
+        rod.parts > 1 && rod.whole == before.whole && rod.a == before.b)
+      nodes.emplace(rod.a, rod.parts);
+  return nodes;
+}
+
+// Where the nodes that both runs show begin among their positions: segments add nodes, which are others of
+// the same name where there are not as many, a model without nets has fewer.
 std::vector<std::pair<Index, Index>> common_nodes(const Trajectory& a, const Trajectory& b) {
-  std::map<std::string_view, Index> place;
+  const auto parts_at = [](const std::map<int, int>& within, const NodeCopy& node) {
+    const auto found = within.find(node.source);
+    return found == within.end() ? 0 : found->second;
+  };
+  const std::map<int, int> in_a = within_rods(a.structure()), in_b = within_rods(b.structure());
+  std::map<std::pair<std::string_view, int>, Index> place;
   Index at = 0;
-  for (const NodeCopy& node : b.structure().node_copies) place.emplace(node.name, at), at += 3;
+  for (const NodeCopy& node : b.structure().node_copies)
+    place.emplace(std::pair(std::string_view(node.name), parts_at(in_b, node)), at), at += 3;
   std::vector<std::pair<Index, Index>> common;
   at = 0;
   for (const NodeCopy& node : a.structure().node_copies) {
-    if (const auto found = place.find(node.name); found != place.end())
+    if (const auto found = place.find({node.name, parts_at(in_a, node)}); found != place.end())
       common.emplace_back(at, found->second);
     at += 3;
   }

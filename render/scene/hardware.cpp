@@ -28,7 +28,8 @@ Vec3f f(const Vec3& v) {
 // end of one ("frontnet"; of "properties" it means nothing), says so.
 bool is_cable(const std::string& group) {
   constexpr std::string_view ends[] = {"cable", "cord", "net"};
-  constexpr std::string_view others[] = {"magnet", "cabinet", "planet", "bonnet", "record"};
+  constexpr std::string_view others[] = {"magnet",  "cabinet", "planet", "bonnet",
+                                         "bayonet", "garnet",  "record"};
   std::string word;
   const auto is_one = [&] {
     if (word.ends_with('s')) word.pop_back();

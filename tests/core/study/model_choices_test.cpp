@@ -344,7 +344,10 @@ acceleration = [0, 0, -9.81]
       const bool of_rigid = m.choice.name.starts_with("rigid rods"),
                  of_forces = m.choice.name.starts_with("quasi");
       if (m.choice.name.starts_with("elastic rods")) CHECK(m.peak_force == Approx(waves).epsilon(1e-9));
-      if (m.choice.name.starts_with("bending rods")) CHECK(m.peak_force == Approx(bent).epsilon(1e-9));
+      if (m.choice.name.starts_with("bending rods")) {
+        CHECK(m.peak_force == Approx(bent).epsilon(1e-9));
+        CHECK(m.difference < 0.1);  // of a rod of 1 m: nodes within it are not compared with others
+      }
       if (!of_rigid && !of_forces) continue;
       INFO(m.choice.name << ": " << m.outcome);
       ++found;
