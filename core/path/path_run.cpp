@@ -83,8 +83,6 @@ class PathRun {
   void begin() {
     InitialState start = initial_state(structure(), base_->system);
     run_.warnings = structure().notes;
-    const auto& on_path = structure().notes_on_path;
-    run_.warnings.insert(run_.warnings.end(), on_path.begin(), on_path.end());
     if (std::string warning = velocity_warning(start, structure()); !warning.empty())
       run_.warnings.push_back(std::move(warning));
     set_law(structure());

@@ -341,6 +341,8 @@ Simulation simulate_as_asked(const std::shared_ptr<const Model>& model, const So
   if (options.model == "full" || options.model == "sector") return without_path(model, options, hooks, "");
   try {
     Simulation run = simulate_on_path(model, options, hooks);
+    const auto& idle = model->structure.notes_on_path;
+    run.warnings.insert(run.warnings.end(), idle.begin(), idle.end());
     run.solved_as = {"path", "one degree of freedom; solver.model = \"" + options.model + "\""};
     if (!(options.tolerance > 0)) return run;
     run.position_estimate = path_estimate(model, options, hooks, run);
