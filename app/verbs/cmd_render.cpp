@@ -87,13 +87,9 @@ int cmd_render(const Arguments& arguments) {
     if (!writes) return interrupted() ? exit_interrupted : exit_code_of(run, diagnostics);
   }
   RunAhead beside(arguments.threads);
-  const std::string summary =
-      write_data(directory, scene, run, diagnostics, as_typed(arguments.words), beside, true, [&] {
-        if (another)
-          FilmFolder::clear(output.written());
-        else
-          make_room(output.written(), Beside::film);
-      });
+  const std::string summary = write_data(
+      directory, scene, run, diagnostics, as_typed(arguments.words), beside, true,
+      [&] { another ? FilmFolder::clear(output.written()) : make_room(output.written(), Beside::film); });
   if (another) claim();
   write_exports(formats, directory, scene, run, diagnostics, arguments);
   keeping.reset();

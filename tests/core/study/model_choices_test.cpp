@@ -346,7 +346,8 @@ acceleration = [0, 0, -9.81]
       if (m.choice.name.starts_with("elastic rods")) CHECK(m.peak_force == Approx(waves).epsilon(1e-9));
       if (m.choice.name.starts_with("bending rods")) {
         CHECK(m.peak_force == Approx(bent).epsilon(1e-9));
-        CHECK(m.difference < 0.1);  // of a rod of 1 m: nodes within it are not compared with others
+        // Of two parts and four, of a rod of 1 m: its middle is not compared with its quarter.
+        if (rods.find("segments = 2") != std::string::npos) CHECK(m.difference < 0.1);
       }
       if (!of_rigid && !of_forces) continue;
       INFO(m.choice.name << ": " << m.outcome);
