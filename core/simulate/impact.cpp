@@ -14,9 +14,8 @@ constexpr double rate_rounding = 1e-14;  // of the largest rate
 // Of all rates before an impact: it stops everything, and what acts, not what rounding leaves of the motion,
 // tells whether the stop is left.
 constexpr double all_stopped = 1e-13;
-// A cascade of blows that loses a thousandth of its energy in each has 5e-5 of it left by then: what goes on
-// is stopped.
-constexpr int most_blows = 10000;
+// Seconds of work, for masses of 1e12 to one that lose nothing: what goes on behind that is stopped.
+constexpr int most_blows = 1'000'000;
 
 class Blows {
  public:
@@ -99,8 +98,8 @@ class Blows {
     for (Index r = 0; r < D_.rows(); ++r) of_rates[r] = rate_rounding * sides_.fastest(side(r), state_);
     auto impulses = solve_box(D_, b_, low_, high_, of_rates);
     if (impulses) return impulses;
-    std::vector<Index>
-        pushing;  // they throw it at each other; friction gives no impulses, and passes none on
+    // They throw it at each other; friction gives no impulses, and passes none on.
+    std::vector<Index> pushing;
     for (Index r = 0; r < D_.rows(); ++r)
       if (high_[r] > 0) pushing.push_back(r);
     for (std::vector<Index>& rows : joined_rows(D_(pushing, pushing))) {

@@ -12,10 +12,9 @@ namespace unfurl {
 
 // Of the rows of `responses`.
 struct Impacts {
-  std::vector<bool> struck;  // was approached, faster than what counts as zero
-  VectorXd lost;             // kinetic energy, of those [J]
-  Index pushed_against =
-      -1;  // the row of a stop that has no answer, as a drive moves what meets it; -1: none
+  std::vector<bool> struck;   // was approached, faster than what counts as zero
+  VectorXd lost;              // kinetic energy, of those [J]
+  Index pushed_against = -1;  // the row of a stop that has no answer: a drive moves what meets it; -1: none
 };
 
 // The stops among `sides_of` (of each row) that rates approach, in a state whose rates then are those behind

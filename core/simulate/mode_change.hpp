@@ -20,8 +20,9 @@ namespace unfurl {
 //                                      rest f_i = -sgn(u_i) tau_k                           friction that
 //                                      slips
 //
-// A stop is a unilateral constraint in both (Moreau 1988 with Newton's law of impact), no impulse passes
-// through dry friction. Of several solutions that differ in forces alone, those held are independent rows.
+// A stop is a unilateral constraint in both (Moreau 1988 with Newton's law of impact, in as many blows as it
+// takes to push on nothing that is being left: impact.hpp), no impulse passes through dry friction. Of
+// several solutions that differ in forces alone, those held are independent rows.
 struct ModeChange {
   struct Impact {
     std::size_t stop;

@@ -94,6 +94,15 @@ TEST_CASE("what is being left is struck by the next blow, not pushed along") {
   }
 }
 
+// 1 mg between a wall and 10 kg, without loss: some 31 000 blows turn the heavy one round, at its own speed
+// but for the share of the light one, a millionth.
+TEST_CASE("as many blows follow one another as masses of ten million to one take") {
+  const Simulation run = run_scene(row({{1e-6, -3}, {10, -1}}, 0, 1, 0.02));
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(kinetic(diagnose(run)) == Approx(5 + 4.5e-6).epsilon(1e-8));
+  CHECK(speed(run, 1) == Approx(1).epsilon(1e-5));
+}
+
 // 10 g between a wall and 10 kg that come at 1 m/s: at a restitution of 0.9 the light one cannot give back
 // what it takes, and both end at the wall, whatever the gaps were, which nothing has a length to compare
 // with.
