@@ -20,10 +20,10 @@ struct Clearance {
 };
 
 /// Rods as cylinders of their radius (where it is not known, as lines) with round ends, at the first `states`
-/// states of a motion, and between them in so many poses that two cannot pass through each other unseen; of
-/// the nearest pair also between the states beside that one. Rods with a common node,
-/// with ends that stay in one place, or with a pin through both (a node on both) meet there and are left out.
-/// None where no two are left.
+/// states of a motion, and where rods move by more than the thinnest is thick in a step at up to 63 poses
+/// between; of the nearest pair also between the states beside that one. Rods with a common node, with ends
+/// that stay in one place, or with a pin through both (a node on both) meet there and are left out. None
+/// where no two are left.
 std::optional<Clearance> least_clearance(const Trajectory& trajectory, std::size_t states);
 
 /// The distance of the segments a0 a1 and b0 b1 [m].
