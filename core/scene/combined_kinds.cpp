@@ -159,7 +159,8 @@ std::string near_kind(const std::string& word) {
 bool begins_as_term(const std::string& text) {
   double coefficient = 0;
   return Words(text).number(coefficient) ||
-         std::ranges::any_of(term_kinds, [&](const TermKind& kind) { return text.starts_with(kind.name); });
+         std::ranges::any_of(
+             term_kinds, [first = Words(text).word()](const TermKind& kind) { return first == kind.name; });
 }
 
 namespace {

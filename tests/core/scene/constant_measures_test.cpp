@@ -98,6 +98,10 @@ TEST_CASE("a deployment says what is wrong with the entry that it names") {
             .find(at + "'pull' is an entry, which is measured by itself, in no sum") != std::string::npos);
   CHECK(said("'pul'").find(at + "there is no force and no constraint 'pul'; did you mean 'pull'?") !=
         std::string::npos);
+  CHECK(error_of(bars +
+                 "[[forces]]\nkind = 'spring'\nname = 'length_pull'\nnodes = ['P', 'C']\nstiffness = 2\n" +
+                 "[deployment]\nmeasure = 'length_pul'\ndeployed = 0.4\n")
+            .find("'length_pul'; did you mean 'length_pull'?") != std::string::npos);
   CHECK(said("'air'").find(at + "'air' measures nothing") != std::string::npos);
   CHECK(said("'banana'").find("does not begin with a number") != std::string::npos);
   CHECK(said("['1 length A C', '-1 length C A']").find(at + "is the same whatever moves") !=
