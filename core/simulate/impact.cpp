@@ -77,11 +77,7 @@ class Blows {
   // All that is approached at once. False where there is no answer.
   bool strike() {
     std::optional<BoxSolution> impulses = solve();
-    if (!impulses) return fail_at(std::find(hit_.begin(), hit_.end(), 1.0) - hit_.begin());
-    bool gives = false;
-    for (Index r = 0; r < D_.rows(); ++r)
-      if (impulses->x[r] > 0 && u_[r] > sides_.zero_rate(side(r))) gives = true, high_[r] = 0;
-    if (gives) impulses = solve();
+    while (impulses && takes_back(impulses->x)) impulses = solve();
     if (!impulses) return fail_at(std::find(hit_.begin(), hit_.end(), 1.0) - hit_.begin());
     responses_.give(impulses->x, state_.w);
     // What is pushed unstruck, as what rests on another stop, gives or takes by rounding: a share of each.
@@ -89,6 +85,14 @@ class Blows {
     const double of_struck = lost.dot(hit_), share = of_struck > 0 ? lost.sum() / of_struck : 1.0;
     out_.lost += share * lost.cwiseProduct(hit_);
     return true;
+  }
+
+  // A push on what is being left would give energy: it is not to be in this blow. Without it another may be.
+  bool takes_back(const VectorXd& pushes) {
+    bool any = false;
+    for (Index r = 0; r < D_.rows(); ++r)
+      if (pushes[r] > 0 && u_[r] > sides_.zero_rate(side(r))) any = true, high_[r] = 0;
+    return any;
   }
 
   std::optional<BoxSolution> solve() {

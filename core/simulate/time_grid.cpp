@@ -9,8 +9,13 @@ namespace unfurl {
 namespace {
 
 // Times closer than this share of a step are one: what a bend does within it is below round-off, and a step
-// of that size would only make noise.
+// of that size would only make noise. So are times that rounding does not tell apart: of 1e7 steps the last
+// ones end some 1e-9 of a step off.
 constexpr double together = 1e-9;
+
+double one_time(double t, double step) {
+  return std::max(together * step, 4 * std::numeric_limits<double>::epsilon() * std::abs(t));
+}
 
 }  // namespace
 
@@ -23,11 +28,14 @@ TimeGrid::TimeGrid(double start, const SolverOptions& options, std::vector<TimeE
     : start_(start),
       step_(options.step),
       end_(options.end_time),
-      count_(std::max(1L, static_cast<long>(std::ceil((end_ - start_) / step_ - together)))),
+      count_(std::max(
+          1L, static_cast<long>(std::ceil(
+                  (end_ - start_ - one_time(std::max(std::abs(start_), std::abs(end_)), step_)) / step_)))),
       edges_(std::move(edges)) {}
 
 TimeGrid::Target TimeGrid::next(double now) const {
-  const long k = static_cast<long>(std::floor((now - start_) / step_ + together)) + 1;
+  const double near = one_time(std::max(std::abs(start_), std::abs(now)), step_);
+  const long k = static_cast<long>(std::floor((now - start_ + near) / step_)) + 1;
   const double t = k >= count_ ? end_ : start_ + static_cast<double>(k) * step_;
   const double h = t - now, rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
   return cut(now, {t, std::abs(h - step_) <= rounding ? step_ : h});
@@ -39,7 +47,7 @@ TimeGrid::Target TimeGrid::next(double now, double wanted) const {
 }
 
 TimeGrid::Target TimeGrid::cut(double now, Target target) const {
-  const double near = together * step_;
+  const double near = one_time(now, step_);
   auto edge = std::upper_bound(edges_.begin(), edges_.end(), now,
                                [](double t, const TimeEdge& e) { return t < e.t; });
   for (; edge != edges_.end() && edge->t <= target.t + near; ++edge) {

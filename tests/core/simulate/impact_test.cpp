@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Blows that follow one another at one time: a body between a wall and another one.
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -141,6 +142,41 @@ TEST_CASE("impacts of bodies in a row give no energy") {
       CHECK(speed(run, static_cast<Index>(k)) >= last - 1e-6);
       last = speed(run, static_cast<Index>(k));
     }
+  }
+}
+
+// A point in the corner of two to four frictionless walls that lean over each other, thrown at some of them
+// while it leaves others: what no wall takes is left, all of it without loss, and no wall is approached then.
+TEST_CASE("impacts in a corner of several walls give no energy") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (int trial = 0; trial < 120; ++trial) {
+    const double e = trial % 2 == 0 ? 1.0 : 0.2 + 0.7 * any(random), way = 6.2 * any(random);
+    const double vx = 2 * std::cos(way), vy = 2 * std::sin(way);
+    std::string walls;
+    std::vector<std::array<double, 2>> normals;
+    for (int k = 0; k < 2 + trial % 3; ++k) {
+      const double turn = 0.2 + 2.7 * any(random);
+      normals.push_back({std::cos(turn), std::sin(turn)});
+      walls += "[[constraints]]\nkind = \"coordinate_stop\"\nnodes = [\"P\"]\nmin = 0\ndirection = [" +
+               number(normals.back()[0]) + ", " + number(normals.back()[1]) +
+               ", 0]\nrest_speed = 0\nrestitution = " + number(e) + "\n";
+    }
+    INFO("trial " << trial << ", e = " << e << "\n" << walls << "velocity " << vx << ", " << vy);
+    const Simulation run = run_scene(
+        "[structure]\nkind = \"custom\"\nnodes = [{name = \"P\", position = [0, 0, 0], mass = 1, velocity = "
+        "[" +
+        number(vx) + ", " + number(vy) +
+        ", 0]}]\n[[structure.constraints]]\nkind = \"plane\"\nnodes = [\"P\"]\nnormal = [0, 0, 1]\n" + walls +
+        "[solver]\nstep = 0.01\nend_time = 0.02\n");
+    REQUIRE(run.status == RunStatus::completed);
+    const Diagnostics d = diagnose(run);
+    const double left = kinetic(d);
+    CHECK(left <= 2 * (1 + 1e-12));
+    if (e == 1.0) CHECK(left == Approx(2).epsilon(1e-12));
+    CHECK(d.at("impact_loss_J").values.back() == Approx(2 - left).margin(1e-12));
+    const VectorXd v = run.trajectory.node_velocities(run.trajectory.size() - 1);
+    for (const auto& [nx, ny] : normals) CHECK(nx * v[0] + ny * v[1] >= -1e-9);
   }
 }
 
