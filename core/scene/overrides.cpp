@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/overrides.hpp"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 #include <utility>
@@ -176,10 +178,16 @@ TomlTree& step_into_array(TomlTree& array, const Step& step, std::string_view so
                 (names.empty() ? first : did_you_mean(step.name, {names.begin(), names.end()}))};
 }
 
-// A vector that the scene leaves out, of which one component is given: all vectors of three that may be left
-// out are zero by default. Of a longer list it is not known how long it should be.
+// Vectors of three: all that may be left out are zero by default.
+bool names_vector(std::string_view key) {
+  constexpr std::array<std::string_view, 9> keys = {
+      "acceleration", "axis", "direction", "force", "normal", "point", "position", "second_axis", "velocity"};
+  return std::ranges::find(keys, key) != keys.end();
+}
+
+// A vector that the scene leaves out, of which one component is given.
 TomlTree zero_vector() {
-  TomlTree made = made_here(TomlTree::Kind::array), zero = made_here(TomlTree::Kind::integer);
+  TomlTree made = made_here(TomlTree::Kind::array), zero = made_here(TomlTree::Kind::real);
   made.items.assign(3, zero);
   return made;
 }
@@ -192,8 +200,7 @@ TomlTree& step_into(TomlTree& tree, const Step& step, const std::string& so_far,
   if (TomlTree* found = tree.find(step.name)) return *found;
   const bool in_list = next && (next->index || next->entry);
   const bool list = in_list && grows((so_far.empty() ? "" : so_far + ".") + step.name);
-  const bool vector =
-      in_list && !list && next->index && *next->index < 3 && step.name != "times" && step.name != "values";
+  const bool vector = in_list && !list && next->index && *next->index < 3 && names_vector(step.name);
   tree.entries.push_back(
       {step.name, vector ? zero_vector() : made_here(list ? TomlTree::Kind::array : TomlTree::Kind::table)});
   return tree.entries.back().value;

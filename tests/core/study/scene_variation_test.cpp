@@ -138,6 +138,9 @@ forces = [{kind = "spring", nodes = ["A", "B"], stiffness = 40},
                            "forces.stiffness", "forces[0", "structure.nodes[1].position[3]"})
     CHECK_FALSE(scene_number(scene, none));
   CHECK_FALSE(is_whole_number(scene, "forces[0].stiffness"));
+  // A vector that is left out is zero, and of real numbers.
+  CHECK(scene_number(scene, "structure.nodes.B.velocity[1]") == 0.0);
+  CHECK_FALSE(is_whole_number(scene, "structure.nodes.B.velocity[1]"));
 }
 
 TEST_CASE("many runs go by the model that costs least, unless the method itself is what is asked about") {
