@@ -46,6 +46,13 @@ class Search {
   double now() const { return o_.clock ? o_.clock() : thread_cpu_seconds(); }
   bool valid(const Evaluation& e) const { return !std::isnan(e.value); }
   bool exact(const Evaluation& e) const { return e.value == target_; }
+  // To rounding of the target; zero is met by what is nothing beside the first value, or the next one to it
+  // (of a rate of 0 an energy of some 1e-60 J is left): no closer, as values may rise with any power.
+  bool meets(const Evaluation& e) const {
+    const double first =
+        seen_.empty() || !std::isfinite(seen_.front().value) ? 0 : std::abs(seen_.front().value);
+    return exact(e) || off(e) <= (target_ == 0 ? 1e-30 * first : 4e-16 * std::abs(target_));
+  }
   bool opposite(const Evaluation& a, const Evaluation& b) const {
     return valid(a) && valid(b) && (a.value < target_) != (b.value < target_);
   }
@@ -73,7 +80,7 @@ class Search {
     for (const Evaluation& end : {a_, b_}) {
       if (!valid(end))
         give_up_at(end, "the measure is not there at an end of --between, " + short_number(end.x, 9));
-      if (exact(end)) return void(a_ = b_ = end);
+      if (meets(end)) return void(a_ = b_ = end);
     }
     if (!opposite(a_, b_)) give_up("the target does not lie between the ends of --between");
   }
@@ -83,7 +90,7 @@ class Search {
     const Evaluation start = at(o_.start);
     if (!valid(start)) give_up_at(start, "the scene as it stands has no such measure");
     a_ = b_ = start;
-    if (exact(start)) return;
+    if (meets(start)) return;
     const double first = o_.start != 0 ? 0.02 * std::abs(o_.start) : 0.02;
     Side up{start, start, start, first}, down{start, start, start, -first};
     for (bool looked = false; up.open || down.open;) {
@@ -106,7 +113,7 @@ class Search {
   bool advance(Side& side) {
     if (!side.open) return false;
     const Evaluation next = at(side.last.x + side.stride);
-    const bool met = exact(next) || opposite(side.last, next);  // of a plateau from above, too
+    const bool met = meets(next) || opposite(side.last, next);  // of a plateau from above, too
     side.took += took_;
     if (side.took > o_.patience_s && took_ > o_.patience_of_first * first_took_ && !met) {
       too_long_ = short_number(next.x, 9);
@@ -120,7 +127,7 @@ class Search {
       return false;
     }
     if (met) {
-      a_ = side.last, b_ = next;
+      b_ = next, a_ = exact(next) || opposite(side.last, next) ? side.last : next;
       return true;
     }
     if (side.before.x != side.last.x && in_dip(side.before, side.last, next)) return true;
@@ -151,9 +158,8 @@ class Search {
       if (x == middle.x || x == before.x || x == behind.x) return false;
       const Evaluation e = at(x);
       if (!valid(e)) return false;
-      if (exact(e) || opposite(middle, e)) {
-        a_ = is_behind ? middle : before;
-        b_ = e;
+      if (meets(e) || opposite(middle, e)) {
+        b_ = e, a_ = exact(e) || opposite(middle, e) ? (is_behind ? middle : before) : e;
         return true;
       }
       if (off(e) < off(middle))

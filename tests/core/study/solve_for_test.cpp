@@ -116,6 +116,11 @@ TEST_CASE("a target of zero is met as well as any, and at an end that was given"
   CHECK(solve_for(f, 0, {.start = 0.4}, {}).x == Approx(std::asin(0.3)).epsilon(1e-11));
   CHECK_THROWS_WITH(solve_for([](double x) { return x < 2 ? -0.01 : 10.0; }, 0, {.low = 1, .high = 3}, {}),
                     Catch::Contains("jumps over the target at 2"));
+  // What is left where nothing moves, and values that rounding leaves beside the target.
+  const auto energy = [](double x) { return 0.5 * x * x + 9e-57; };
+  CHECK(std::abs(solve_for(energy, 0, {.start = 10}, {}).x) < 1e-14);
+  const auto held = [](double x) { return x < 25 ? 1 - 1.1e-16 : 1.5; };
+  CHECK(solve_for(held, 1, {.start = 20}, {}).evaluations.size() == 1);
   const auto twice = [](double x) { return 2 * x; };
   for (const double end : {1.5, 3.5}) {
     const Solved s = solve_for(twice, 2 * end, {.low = 1.5, .high = 3.5}, {});
