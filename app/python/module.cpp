@@ -26,6 +26,7 @@
 #include "core/scene/write.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "core/simulate/stepper.hpp"
+#include "core/simulate/stretched.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/scene_variation.hpp"
@@ -184,7 +185,7 @@ std::shared_ptr<Run> run_scene(const SceneSource& source, const std::vector<std:
 }
 
 // What a scene says that a stepper does not do.
-std::vector<std::string> idle_when_stepped(const SolverOptions& solver) {
+std::vector<std::string> idle_when_stepped(const SolverOptions& solver, bool stretches) {
   std::vector<std::string> said;
   if (solver.model == "path" || solver.model == "sector")
     said.push_back("solver.model = \"" + solver.model +
@@ -192,13 +193,22 @@ std::vector<std::string> idle_when_stepped(const SolverOptions& solver) {
   if (solver.tolerance > 0)
     said.emplace_back(
         "solver.tolerance does nothing here: a stepper takes the stages and the step as they are");
+  if (stretches)
+    said.emplace_back(
+        "structure.rod_model = \"quasi-static\": a stepper's x is that of rigid rods, until finish() "
+        "stretches them");
   return said;
 }
 
 class SteppedScene {
  public:
   explicit SteppedScene(Scene scene)
-      : scene_(std::move(scene)), stepper_(build_model(scene_), scene_.solver) {}
+      : scene_(std::move(scene)), model_(build_model(scene_)), stepper_(model_, scene_.solver) {
+    said_ = start_warnings(*model_, scene_.solver);
+  }
+  std::vector<std::string> idle() const {
+    return idle_when_stepped(scene_.solver, model_->structure.quasi_static);
+  }
   bool step() {
     const py::gil_scoped_release release;
     const std::lock_guard lock(*use_);
@@ -282,7 +292,8 @@ class SteppedScene {
   const Trajectory& trajectory() const { return stepper_.run().trajectory; }
   bool running() const { return goes_on_ && stepper_.time() < stepper_.run().options.end_time; }
   std::vector<std::string> all_warnings() const {
-    std::vector<std::string> said = idle_when_stepped(scene_.solver);
+    std::vector<std::string> said = idle();
+    said.insert(said.end(), said_.begin(), said_.end());
     said.insert(said.end(), stepper_.run().warnings.begin(), stepper_.run().warnings.end());
     return said;
   }
@@ -291,6 +302,7 @@ class SteppedScene {
     Simulation run = stepper_.run();
     if (running()) run.status = RunStatus::stopped;
     run.warnings = all_warnings();
+    if (model_->structure.quasi_static) add_stretch(run.trajectory);
     if (scene_.solver.model != "full" && solved_as(run).name == "full")
       run.solved_as.why = "a stepper steps the whole model";
     return run;
@@ -299,7 +311,9 @@ class SteppedScene {
     return py::array_t<double>({static_cast<py::ssize_t>(x.size() / 3), py::ssize_t{3}}, x.data());
   }
   Scene scene_;
+  std::shared_ptr<const Model> model_;
   Stepper stepper_;
+  std::vector<std::string> said_;
   std::map<int, Vec3> forces_;
   bool goes_on_ = true;
   std::shared_ptr<std::mutex> use_ = std::make_shared<std::mutex>();
@@ -397,6 +411,7 @@ void add_scene(py::module_& module) {
       .def_property_readonly("v", &SteppedScene::velocities)
       .def_property_readonly("status", &SteppedScene::status)
       .def_property_readonly("warnings", &SteppedScene::warnings)
+      .def_property_readonly("idle", &SteppedScene::idle)
       .def_property_readonly("events", &SteppedScene::events);
 
   py::class_<SceneSource>(module, "SceneSource")

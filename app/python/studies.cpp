@@ -181,6 +181,7 @@ double solve_scene(const SceneSource& given, const std::string& key, const std::
   const RunMeasure measure = find_measure(measure_name, columns_of(build_model(scene)));
   if (is_whole_number(scene, key))
     throw StudyError(in_quotes(key) + " takes whole numbers, which cannot be searched");
+  if (!std::isfinite(target)) throw StudyError("a target is a finite number; got " + exact_number(target));
   SolveOptions options;
   if (between) {
     options.low = between->first;

@@ -12,6 +12,7 @@
 #include "app/verbs/study_session.hpp"
 #include "core/path/margin.hpp"
 #include "core/path/path.hpp"
+#include "core/path/sector.hpp"
 #include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
 #include "render/plot/figures/margin_figure.hpp"
@@ -243,6 +244,22 @@ void print_margin(const Scene& scene, const Margin& margin, const std::vector<St
     std::cout << "no hinge jams: no two rods that meet at a node turn against each other on the way\n";
 }
 
+// Of rings of more than a dozen units rounding hides the path next to the flat pose; that of one of their
+// equal sectors it does not. Hinges jam one by one, in the whole.
+Margin margin_as_far_as_followed(const std::shared_ptr<const Model>& model, const Scene& scene,
+                                 const std::map<std::string, double>& factors, bool by_sector) {
+  try {
+    return margin_of(model, scene.solver, factors);
+  } catch (const PathRefused& refused) {
+    try {
+      if (by_sector && model->structure.deployment.folds())
+        return margin_of(Sector(model).model(), scene.solver, factors);
+    } catch (const PathRefused&) {  // no sector: of the whole, then
+    }
+    throw PathRefused(scene.name + ": no margin: " + refused.what());
+  }
+}
+
 }  // namespace
 
 int cmd_margin(const Arguments& arguments) {
@@ -251,13 +268,7 @@ int cmd_margin(const Arguments& arguments) {
   warn_of_idle_sets(arguments, {"solver.model", "solver.tolerance"}, "margins are those of the path");
   const InterruptGuard guard;
   const auto model = model_of(scene, arguments);
-  const Margin margin = [&] {
-    try {
-      return margin_of(model, scene.solver, factors);
-    } catch (const PathRefused& refused) {
-      throw PathRefused(scene.name + ": no margin: " + refused.what());
-    }
-  }();
+  const Margin margin = margin_as_far_as_followed(model, scene, factors, !arguments.study.stuck);
   constexpr std::size_t few = 12;  // hinges whose pairs are told too
   std::vector<StuckHinge> hinges;
   if (arguments.study.stuck) hinges = stuck_hinges(model, scene.solver, margin, few);

@@ -108,7 +108,7 @@ class Springs final : public ForceBlock {
       const SpringLaw law = spring_law(spring.law, at.t, q);
       const double rate = spring.measure.rate(g.data(), v) - law.rest_rate;
       const double n = spring_pull(spring.law, law, s, rate).tension;
-      const Pull pull = pull_of(spring.law, s - law.rest);
+      const PullByLength pull = pull_of(spring.law, s - law.rest);
       if (spring.law.one_sided && n == 0.0) continue;
       if (spring.pulleys)
         spring.pulleys->derivatives(q, v, n, by_q, by_v);
@@ -223,7 +223,7 @@ SpringLaw spring_law(const Force& force, double t, const double* q) {
 
 // What comes in is what T + V gain beside what is dissipated, (N - N_e)(s' - s_0'): k' V / k - N s_0'
 SpringPull spring_pull(const Force& force, const SpringLaw& law, double s, double stretching) {
-  const Pull pull = pull_of(force, s - law.rest);
+  const PullByLength pull = pull_of(force, s - law.rest);
   const double all = law.stiffness * pull.elastic + force.damping * pull.share * stretching;
   const double n = force.slack ? 0.0 : force.one_sided ? std::max(all, 0.0) : all;
   return {n, law.stiffness_rate * pull.energy - n * law.rest_rate};

@@ -24,7 +24,7 @@ void StraightSprings::push_back(const Force& force) {
 struct StraightSprings::Tension {
   Vec3 u;
   double s, rate, N, elastic;  // elastic: N without its damper's part
-  Pull pull;
+  PullByLength pull;
 };
 
 // Whether there is a force at all.

@@ -10,11 +10,11 @@ namespace unfurl {
 // The law of a spring or a cable (spring.hpp) at the stretch e: N_e = k elastic, the share of the spring that
 // pulls, N_e' / k, with its slope, V = k energy. It begins over `smoothing` on both sides where it pulls
 // only.
-struct Pull {
+struct PullByLength {
   double elastic, share, bend, energy;
 };
 template <class Law>  // has one_sided, smoothing
-Pull pull_of(const Law& law, double e) {
+PullByLength pull_of(const Law& law, double e) {
   const double w = law.one_sided ? law.smoothing : 0.0;
   if (!law.one_sided || (e >= w && e > 0)) return {e, 1.0, 0.0, 0.5 * e * e + w * w / 6};
   if (e <= -w) return {0, 0, 0, 0};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/math/golden_section.hpp"
 #include "core/path/margin_loads.hpp"
@@ -21,6 +22,12 @@ constexpr double rounding = 1e-13;
 constexpr double stationary = 1e-9;
 constexpr double same_end = 1e-8;  // of the way: the motion gets there
 constexpr double infinite = std::numeric_limits<double>::infinity();
+
+std::string in_degrees(double angle) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g deg", angle / radians_per_degree);
+  return text;
+}
 
 std::shared_ptr<const Path> path_for_margins(const std::shared_ptr<const Model>& model) {
   std::shared_ptr<const Path> path = trace_path(model);
@@ -96,9 +103,22 @@ class MarginMaker {
       out_.sense = -out_.sense;
       zero = deployed_pose(motion_.path(), structure_.deployment, out_.sense > 0, far_enough);
     }
-    if (!zero) throw PathRefused("the path does not lead to a deployed pose");
+    if (!zero) throw PathRefused(why_not_deployed());
     end_ = out_.sense * *zero;
     if (const auto bar = motion_.barred(out_.sense, *end_)) std::tie(end_, out_.stop) = *bar;
+  }
+
+  std::string why_not_deployed() const {
+    double end = 0;
+    for (long k = 0; k < far_enough; ++k) {
+      const PathPiece* piece = motion_.path().piece(out_.sense > 0 ? k : -k - 1);
+      if (!piece)
+        return "the path cannot be followed to a deployed pose" +
+               (structure_.deployment.folds() ? ", no further than to " + in_degrees(fold_angle(end))
+                                              : std::string());
+      end = out_.sense > 0 ? piece->b : -piece->a;
+    }
+    return "the path does not lead to a deployed pose";
   }
 
   // The sense in which the motion begins, whatever may be deployed.

@@ -40,7 +40,7 @@ class SectorBuilder {
  private:
   static std::size_t place(int i) { return static_cast<std::size_t>(i); }
   Structure& s() { return out_.structure; }
-  const Image& image(int node) const { return symmetry_.nodes[place(node)]; }
+  const TurnedImage& image(int node) const { return symmetry_.nodes[place(node)]; }
 
   void take_nodes() {
     out_.node_at.assign(whole_.nodes.size(), -1);

@@ -123,8 +123,9 @@ class Trial {
 
   // The cycles of a permutation: all of n entries, or of one that acts on the whole (where `whole` asks).
   template <class Name>
-  std::vector<Image> images(const std::vector<int>& to, const Name& name, std::vector<char>* whole) const {
-    std::vector<Image> out(to.size(), Image{-1, 0});
+  std::vector<TurnedImage> images(const std::vector<int>& to, const Name& name,
+                                  std::vector<char>* whole) const {
+    std::vector<TurnedImage> out(to.size(), TurnedImage{-1, 0});
     if (whole) whole->assign(to.size(), 0);
     for (std::size_t i = 0; i < to.size(); ++i) {
       if (out[i].source >= 0) continue;

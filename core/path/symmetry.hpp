@@ -21,16 +21,16 @@ struct SectorRefused : PathRefused {
 };
 
 // An entry as the turned image of another: that of index `source`, turned `turns` times.
-struct Image {
+struct TurnedImage {
   int source = 0, turns = 0;
 };
 
 struct Symmetry {
   int order = 1;  // n
   Vec3 axis = Vec3::UnitZ(), centre = Vec3::Zero();
-  std::vector<Image> nodes, rods;
+  std::vector<TurnedImage> nodes, rods;
   // Of every force and nonlinear constraint; those that act on the whole ring are images of themselves.
-  std::vector<Image> forces, constraints;
+  std::vector<TurnedImage> forces, constraints;
   std::vector<char> whole_force, whole_constraint;
 
   Mat3 turn(int turns) const;

@@ -61,6 +61,22 @@ std::string_view to_string(RunStatus status) {
   return "failed";
 }
 
+namespace {
+
+std::vector<std::string> warnings_of_start(const Model& model, const InitialState& start,
+                                           const SolverOptions& options) {
+  std::vector<std::string> warnings = model.structure.notes;
+  std::vector<std::string> said{velocity_warning(start, model.structure),
+                                elastic_step_warning(model, start.state, options)};
+  if (model.structure.kind == "custom")
+    said.push_back(misfit_warning(model.system, node_positions(model.structure)));
+  for (std::string& warning : said)
+    if (!warning.empty()) warnings.push_back(std::move(warning));
+  return warnings;
+}
+
+}  // namespace
+
 SolvedAs solved_as(const Simulation& run) {
   SolvedAs out = run.solved_as;
   const Structure& structure = run.trajectory.structure();
@@ -81,6 +97,10 @@ Parts parts_for(const Model& model) {
   return parts;
 }
 
+std::vector<std::string> start_warnings(const Model& model, const SolverOptions& options) {
+  return warnings_of_start(model, initial_state(model.structure, model.system), options);
+}
+
 Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
                     const SimulationHooks& hooks) {
   std::size_t first_new = 0;
@@ -91,15 +111,7 @@ Simulation simulate_in_parts(std::shared_ptr<const Model> model, const SolverOpt
                              const SimulationHooks& hooks, const Parts& parts, std::size_t& first_new) {
   if (!find_method(options.method)) throw std::invalid_argument("no method is called " + options.method);
   InitialState start = initial_state(model->structure, model->system);
-  std::vector<std::string> warnings = model->structure.notes;
-  if (std::string warning = velocity_warning(start, model->structure); !warning.empty())
-    warnings.push_back(std::move(warning));
-  if (std::string warning = elastic_step_warning(*model, start.state, options); !warning.empty())
-    warnings.push_back(std::move(warning));
-  if (model->structure.kind == "custom")
-    if (std::string warning = misfit_warning(model->system, node_positions(model->structure));
-        !warning.empty())
-      warnings.push_back(std::move(warning));
+  const std::vector<std::string> warnings = warnings_of_start(*model, start, options);
   const bool stretches = model->structure.quasi_static;
   double begin = thread_cpu_seconds();
   Progress progress(hooks, start.state.t, options.end_time);

@@ -63,6 +63,10 @@ SolvedAs solved_as(const Simulation& run);
 Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
                     const SimulationHooks& hooks = {});
 
+// What a run says before its first step: notes of the structure, velocities and rods that do not fit, steps
+// that are too long for what is stiff. A Stepper leaves that to whom it steps for, and add_stretch(), too.
+std::vector<std::string> start_warnings(const Model& model, const SolverOptions& options);
+
 double thread_cpu_seconds();  // of the calling thread so far: what cpu_s is a difference of
 
 }  // namespace unfurl

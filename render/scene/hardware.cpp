@@ -295,7 +295,7 @@ void Hardware::add_joint(std::size_t n, double t, const std::vector<Vec3>& at, D
 
 void Hardware::add_crossings(double t, const std::vector<Vec3>& at, DrawList& list) const {
   if (!detailed_) return;
-  for (const Crossing& c : joints_->crossings()) {
+  for (const RodCrossing& c : joints_->crossings()) {
     if (c.pin < 0) continue;
     const auto i = static_cast<std::size_t>(c.rod);
     const Vec3 side = joints_->side(c.rod, t);

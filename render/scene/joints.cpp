@@ -193,7 +193,7 @@ void Joints::find_crossings(const Structure& structure, const std::vector<double
         if (!(along.cross(other).norm() > 3 * least_sine)) continue;
         const Nearest n = nearest(a(i), b(i), a(j), b(j));
         if (n.distance > reach || std::min(n.u, n.v) < 0.08 || std::max(n.u, n.v) > 0.92) continue;
-        const auto known = [&](const Crossing& c) { return c.rod == i && c.other == j; };
+        const auto known = [&](const RodCrossing& c) { return c.rod == i && c.other == j; };
         if (!found.empty()) {
           if (found[ui * rods_.size() + uj]) continue;
           found[ui * rods_.size() + uj] = true;
@@ -203,7 +203,7 @@ void Joints::find_crossings(const Structure& structure, const std::vector<double
         crossings_.push_back({i, j, -1});
       }
   }
-  std::ranges::sort(crossings_, [](const Crossing& c, const Crossing& d) {
+  std::ranges::sort(crossings_, [](const RodCrossing& c, const RodCrossing& d) {
     return std::pair(c.rod, c.other) < std::pair(d.rod, d.other);
   });
 }
@@ -212,7 +212,7 @@ void Joints::find_crossings(const Structure& structure, const std::vector<double
 void Joints::find_pins(const Structure& structure, const std::vector<double>& radius) {
   for (std::size_t n = 0; n < structure.node_copies.size(); ++n) {
     if (!ends_[n].empty()) continue;
-    for (Crossing& c : crossings_) {
+    for (RodCrossing& c : crossings_) {
       const RodCopy &r = rods_[static_cast<std::size_t>(c.rod)],
                     &s = rods_[static_cast<std::size_t>(c.other)];
       const auto on = [&](const RodCopy& rod, std::size_t k) {
@@ -233,7 +233,7 @@ void Joints::find_pins(const Structure& structure, const std::vector<double>& ra
 // The first of each pair passes inside, its other outside, and so on from rod to rod: of a ring the upper
 // rods are outside, and what they carry ends before them.
 void Joints::find_sides(const Vec3& center) {
-  for (const Crossing& c : crossings_) {
+  for (const RodCrossing& c : crossings_) {
     DirectionTrack normal = normal_of({c.rod, 0}, {c.other, 0});
     if (normal.empty()) continue;
     const Vec3 n = normal[middle()];

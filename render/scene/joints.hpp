@@ -24,7 +24,7 @@ struct RodEnd {
 };
 
 // Two rods that cross, pinned to one another or not.
-struct Crossing {
+struct RodCrossing {
   int rod = 0, other = 0;
   int pin = -1;  // the node at which they are pinned; -1: none
 };
@@ -45,7 +45,7 @@ class Joints {
   int layer(const RodEnd& end) const { return layers_[index(end)]; }
   // To which side a rod is moved so that it passes those that it crosses, a unit vector; zero: none.
   Vec3 side(int rod, double t) const;
-  const std::vector<Crossing>& crossings() const { return crossings_; }
+  const std::vector<RodCrossing>& crossings() const { return crossings_; }
 
  private:
   static std::size_t index(const RodEnd& e) { return static_cast<std::size_t>(2 * e.rod + e.end); }
@@ -68,7 +68,7 @@ class Joints {
   std::vector<std::vector<RodEnd>> ends_;  // per node
   std::vector<DirectionTrack> axes_;       // per end
   std::vector<int> layers_;                // per end
-  std::vector<Crossing> crossings_;
+  std::vector<RodCrossing> crossings_;
   std::vector<DirectionTrack> sides_;  // per rod
 };
 

@@ -247,6 +247,20 @@ TEST_CASE("margin: drives against resistances by source, in words, JSON and file
   CHECK(unknown.code == 2);
   CHECK(contains(unknown.err, "nothing that acts is called 'wind'"));
   CHECK(run_program({"margin", "hoop6", "--factor", "loads"}).code == 2);
+  // Of more units than rounding lets the whole's path be followed: by one of its sectors, and as much more of
+  // each source as there are more of them. Not of hinges that jam one by one.
+  double torque[2] = {};
+  for (const int units : {8, 16}) {
+    const ProgramResult ring = run_program({"margin", "hoop6", "--json", "--set", "structure.fold_angle=60",
+                                            "--set", "structure.units=" + std::to_string(units)});
+    REQUIRE(ring.code == 0);
+    torque[units == 16] = nlohmann::json::parse(ring.out)["sources"][0]["largest_drive"].get<double>();
+  }
+  CHECK(torque[1] == Approx(2 * torque[0]).epsilon(1e-9));
+  const ProgramResult jams = run_program(
+      {"margin", "hoop6", "--stuck", "--set", "structure.fold_angle=60", "--set", "structure.units=16"});
+  CHECK(jams.code == 3);
+  CHECK(contains(jams.err, "the path cannot be followed to a deployed pose, no further than to 0.0"));
 }
 
 TEST_CASE("solver.model: the summary says what was solved and why, and path refuses what it cannot") {

@@ -123,6 +123,24 @@ def test_stepper_goes_through_events_and_gives_the_same_run():
     assert np.array_equal(stepper.x, stepped.x[-1])
 
 
+def test_a_stepper_ends_with_what_rods_stretch_and_with_the_warnings_of_the_start():
+    soft = unfurl.Scene("hoop6", set={"structure.youngs_modulus": 7e8, "structure.rod_model": "quasi-static", "solver.end_time": 2})
+    with pytest.warns(UserWarning, match="a stepper's x is that of rigid rods, until finish"):
+        stepper = soft.stepper()
+    while stepper.step():
+        pass
+    whole, stepped = soft.run(), stepper.finish()
+    assert np.array_equal(np.asarray(whole.x), np.asarray(stepped.x)) and np.abs(stepped.x[-1] - stepper.x).max() > 1e-4
+    assert "B0" in stepped.x and "X0" not in stepped.x and 3 not in stepped.x
+    # Velocities along a rod are taken away, and it is said.
+    rod = unfurl.Scene(text="[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, "
+                            "{name = 'B', position = [1, 0, 0], mass = 1, velocity = [0.5, 1, 0]}]\nrods = [{nodes = ['A', 'B']}]\n"
+                            "[solver]\nend_time = 0.1\n")
+    stepper = rod.stepper()
+    assert any("were projected" in said for said in stepper.warnings)
+    assert stepper.finish().warnings[:1] == rod.run().warnings[:1]
+
+
 def test_forces_are_set_between_steps():
     # A free mass of 2 kg: the force of each step gives parabola after parabola.
     mass = unfurl.Scene(text="[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'P'\nposition = [1, 0, 0]\nmass = 2\n"
@@ -497,6 +515,8 @@ def test_solve_refuses_what_the_program_refuses():
         ring.solve("structure.fold_angl", deploy_time=4.92)
     with pytest.raises(unfurl.SceneError, match="structure.fold_angle"):
         ring.solve("structure.fold_angle", deploy_time=4.92, between=(-1000, 80))
+    with pytest.raises(unfurl.StudyError, match="a target is a finite number; got nan"):
+        unfurl.Scene("hoop6").solve("structure.hinge_force", deploy_time=float("nan"))
     with pytest.raises(unfurl.StudyError, match="takes whole numbers"):
         ring.solve("structure.units", deploy_time=4.92)
     # A range is looked in or refused: a search from the scene's own value would find one outside it.

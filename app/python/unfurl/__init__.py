@@ -87,6 +87,10 @@ class Named:
             return self.array[:, self._index[key]]
         return self.array[key]
 
+    def __contains__(self, name) -> bool:
+        """Is there a node (rod) of that name?"""
+        return name in self._index
+
     def __array__(self, dtype=None, copy=None):
         return self.array if dtype is None else self.array.astype(dtype)
 
@@ -237,7 +241,7 @@ class Scene:
     def stepper(self) -> Stepper:
         """Step by step, through events, stops and latches: while s.step(): s.t, s.x, s.v. The whole model, in the scene's steps."""
         stepper = Stepper(self._source)
-        for said in stepper.warnings:  # keys of the scene that do nothing here
+        for said in stepper.idle:  # keys of the scene that do nothing here
             warnings.warn(said, stacklevel=2)
         return stepper
 
