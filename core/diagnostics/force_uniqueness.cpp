@@ -10,8 +10,10 @@
 #include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/reactions.hpp"
 #include "core/math/determined_rows.hpp"
+#include "core/math/factors.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/elastic_sharing.hpp"
+#include "core/simulate/singular_poses.hpp"
 
 namespace unfurl {
 namespace {
@@ -86,14 +88,36 @@ void ForceUniqueness::examine(const Simulation& run, const RestingRows& resting,
   rigidly_[first] =
       std::all_of(rigid.begin(), rigid.begin() + static_cast<std::ptrdiff_t>(kept), std::identity());
   const VectorXd compliance = row_compliance(run.trajectory.model(first));
-  if (rigidly_[first] || compliance.size() == 0)
+  if (rigidly_[first] || compliance.size() == 0) {
     known_.usual = rigid;
-  else
+  } else {
     for (const auto& [i, unused] : seen) any_of_both(known_.usual, determined_at(i, compliance));
+    open_where_rank_falls(run, seen);
+  }
   usual_[first] = known_.usual;
   std::set<std::string>& open = open_cables_[first];
   for (std::size_t k = 0; k < cables.size(); ++k)
     if (known_.usual[kept + k] == 0 && !cables[k].empty()) open.insert(cables[k]);
+}
+
+// Where rods lie beside others nothing may be left that rigid rods determine, and a pose without rank has no
+// fewer of that: its rank tells.
+void ForceUniqueness::open_where_rank_falls(const Simulation& run,
+                                            const std::map<std::size_t, std::vector<char>>& seen) {
+  constexpr double lost = 1e-6;  // as determined_rows() has it
+  const System& system = run.trajectory.model(seen.begin()->first).system;
+  if (std::max(system.constraints(), system.solved_coordinates()) > max_singular_size) return;
+  std::map<std::size_t, Index> ranks;
+  Index usual = 0;
+  SparseRows G = system.jacobian_pattern();
+  std::vector<double> scratch;
+  for (const auto& [i, unused] : seen) {
+    system.jacobian(run.trajectory.node_positions(i), G, scratch);
+    ranks[i] = rank_of(MatrixXd(G).rowwise().normalized(), lost);
+    usual = std::max(usual, ranks[i]);
+  }
+  for (const auto& [i, rank] : ranks)
+    if (rank < usual && !run.trajectory.report(i).singular_event) singular_.emplace(i, known_.rigidly);
 }
 
 bool ForceUniqueness::all_by_rigid_rods(std::size_t state) const {

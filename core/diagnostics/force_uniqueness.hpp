@@ -64,6 +64,7 @@ class ForceUniqueness {
  private:
   void examine(const Simulation& run, const RestingRows& resting, std::size_t first, std::size_t last,
                bool ends);
+  void open_where_rank_falls(const Simulation& run, const std::map<std::size_t, std::vector<char>>& seen);
 
   KnownUniqueness known_;
   std::size_t examined_ = 0;

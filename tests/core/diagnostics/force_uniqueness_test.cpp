@@ -115,6 +115,34 @@ TEST_CASE("a parallelogram that starts flat opens its forces at the start alone"
   CHECK(d.at("axial_force_max_unique").values.back() == 1.0);
 }
 
+// Every rod has a twin with a modulus, or both have: what they share is known but in the flat pose, where the
+// parallelogram's own forces are open. The motion is that of twice the rods.
+TEST_CASE("twins of rods leave a flat pose as open as it is without them") {
+  for (const bool both : {false, true}) {
+    std::string rods;
+    int count = 0;
+    for (const std::string ends : {"'A', 'B'", "'B', 'C'", "'D', 'C'"})
+      for (const bool gives : {both, true})
+        rods += std::string(rods.empty() ? "" : ", ") + "{name = 'r" + std::to_string(++count) +
+                "', nodes = [" + ends + "], mass = 1" + (gives ? ", area = 1e-4, youngs_modulus = 1e9" : "") +
+                "}";
+    const Simulation run = run_scene(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, "
+        "{name = 'D', position = [2, 0, 0], fixed = true}, {name = 'B', position = [1, 0, 0], velocity = [0, "
+        "0, "
+        "1]}, {name = 'C', position = [3, 0, 0], velocity = [0, 0, 1]}]\nrods = [" +
+        rods +
+        "]\n[[constraints]]\nkind = 'plane'\nnodes = ['B', 'C']\nnormal = [0, 1, 0]\n[[loads]]\nnodes = "
+        "['C']\nforce = [7, 0, 0]\n[solver]\nstep = 0.01\nstages = 5\nend_time = 0.1\n");
+    REQUIRE(run.status == RunStatus::completed);
+    const Diagnostics d = diagnose(run);
+    for (Index r = 0; r < 6; ++r) {
+      CHECK_FALSE(d.force_unique(0, r));
+      for (Index i = 1; i < d.force_unique.rows(); ++i) CHECK(d.force_unique(i, r));
+    }
+  }
+}
+
 TEST_CASE("a largest force that is not known is not unique") {
   // Rods in line would have to bear the weight across: the deployed pose has no forces.
   const Simulation run = library_run("hoop6", {"structure.youngs_modulus=7e10", "structure.fold_angle=60",
