@@ -95,7 +95,7 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
     event = locate(h, now().t + 2 * stepping::near_deployed * h);
   // No step that ends so near the pose can be solved: the run's end lies on the way there.
   if (event && event->t > grid_.end()) {
-    to.state = on_cubic(now(), *event, grid_.end());
+    to.state = on_cubic(now(), *event, std::min(now().t + h, grid_.end()));
     project(system(), to.state);
     to.report = {};
     return event.reset(), true;
