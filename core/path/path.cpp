@@ -322,10 +322,18 @@ const PathPiece* Path::piece(long number) const {
 
 std::optional<long> Path::piece_of(double s) const {
   if (!std::isfinite(s)) return std::nullopt;
-  for (long k = s >= 0 ? 0 : -1;; s >= 0 ? ++k : --k) {
-    const PathPiece* at = piece(k);
+  const bool ahead = s >= 0;
+  const auto known = [&] {
+    const std::lock_guard lock(mutex_);
+    const std::deque<PathPiece>& pieces = (ahead ? forward_ : backward_).pieces;
+    return std::partition_point(pieces.begin(), pieces.end(),
+                                [&](const PathPiece& p) { return ahead ? p.b < s : p.a > s; }) -
+           pieces.begin();
+  };
+  for (long k = known();; ++k) {  // behind those, further ones
+    const PathPiece* at = piece(ahead ? k : -k - 1);
     if (!at) return std::nullopt;
-    if (s >= 0 ? s <= at->b : s >= at->a) return k;
+    if (ahead ? s <= at->b : s >= at->a) return ahead ? k : -k - 1;
   }
 }
 

@@ -168,7 +168,7 @@ void PathMotion::on_drive(double t, double& s, double& v) const {
       turn = next;
       continue;
     }
-    if (std::abs(change) > longest) it = 0;
+    if (std::isnan(turn) && std::abs(change) > longest) it = 0;
     s = next, m = found, here = there;
   }
   v = drive_.target.derivative(1, t) / m.slope;

@@ -54,6 +54,19 @@ double length_at_end(const Simulation& run) {
 
 }  // namespace
 
+// Coordinates a thousand times as long as the only rod are known to fewer digits than a path is traced with.
+TEST_CASE("a drive that leads beyond where the path can be followed is refused") {
+  const Scene scene = read_scene_text(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'P', position = [0, 0, 0], mass = 0.05}, {name = 'Q', "
+      "position = [0.02, 0, 0], mass = 0.05}]\nrods = [{nodes = ['P', 'Q'], mass = 0.01}]\n"
+      "[[constraints]]\nkind = 'line'\nnodes = ['P', 'Q']\ndirection = [1, 0, 0]\n"
+      "[[constraints]]\nkind = 'coordinate'\nnodes = ['P']\ndirection = [1, 0, 0]\nmotion = 'smooth'\nto = "
+      "40\n"
+      "duration = 20\n[solver]\nstep = 0.1\nend_time = 25\n",
+      "cart.toml", {});
+  CHECK_THROWS_AS(simulate_on_path(build_model(scene), scene.solver), PathRefused);
+}
+
 // 4 m are passed by a lot, a little and by 1e-9 of them; 1e-11 of them more or less is 1e-5 rad of the crank.
 TEST_CASE("a drive beyond what the structure can reach is refused where it gets there") {
   CHECK(refusal(driven({"motion=\"rate\"", "rate=0.5", "ramp=0.1", "solver.end_time=4"})).find("the drive") !=
