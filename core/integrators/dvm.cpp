@@ -365,13 +365,21 @@ void Dvm::settle_end() {
   eq_.phi.col(last) = phi;
 }
 
+// Does the pose of the factorisation lie so near to a singular one that rounding tells its weak mode?
+bool Dvm::is_weak() {
+  const double weakest = saddle_.weakest_pivot(needed_pivot_);
+  const Index redundant = saddle_.redundant_below(needed_pivot_);
+  usual_redundancy_ = std::min(usual_redundancy_, redundant);
+  return redundant > usual_redundancy_ || (weakest < needed_pivot_ && weakest < weak_pose * weak_pose);
+}
+
 // p_1 and the velocity-level constraint: [M G^T; G 0] [w_1; mu] = [p_1 free; g'(t)] at the end pose, mu = h
 // b_s lambda_s. The factorisation is the one that the next step starts with.
 void Dvm::finish(State& state, double h, StepReport& report) {
   eq_.end_momentum(p1_);
   eq_.pose(c_.s - 1, pose_);
   freeze(pose_, report);
-  if (tight_ && frozen_) saddle_.weakest_pivot(needed_pivot_);
+  report.weak_end = frozen_ && needed_pivot_ > 0 && is_weak();
   if (system_.rheonomic()) system_.target_rate(state.t + h, rate_);
   if (!eq_.rods.still(unheld, state.t + h, h, pose_, {G_, p1_, rate_}, w1_, mu_))
     saddle_.solve(p1_, rate_, w1_, mu_);

@@ -101,6 +101,9 @@ class Dvm final : public Integrator {
   // grow where a motion is unstable, in a ring of joints a thousandfold while it opens. Singular values above
   // `strong` are never looked at.
   static constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
+  // Where a singular value sigma is a length of the pose, rounding leaves eps / sigma of it, and eps /
+  // sigma^2 of a velocity that the constraints are asked for there.
+  static constexpr double weak_pose = 1e-6;
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr double most_prolonged = 4;  // steps of the last one's length
   static constexpr double unheld = 100;        // h omega of a rod, from above, whose velocity at ends is held
@@ -129,6 +132,7 @@ class Dvm final : public Integrator {
   bool stiff_iterations(const State& state, StepReport& report);
   bool steered_iterations(const State& state, StepReport& report);
   bool needs_care();
+  bool is_weak();
   bool tight_iterations(const State& state, StepReport& report);
   void arrive(State& state);
   template <LaneCount K>
@@ -173,6 +177,7 @@ class Dvm final : public Integrator {
   double harmless_ = harmless;
   double needed_pivot_ = 0;  // of the weakest mode, for this step to do without care
   bool tight_ = false;       // this step is solved with care for weak modes
+  Index usual_redundancy_ = std::numeric_limits<Index>::max();  // the least of all poses
   CarriedSum carried_;
 };
 

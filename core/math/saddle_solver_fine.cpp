@@ -81,6 +81,13 @@ double SaddleSolver::weakest_pivot(double bound) {
   return std::min(bound, weakest_);
 }
 
+Index SaddleSolver::redundant_below(double bound) const {
+  Index below = 0;
+  for (Index r = 0; r < m_ && redundant_ > 0; ++r)
+    below += pivot_of_row(r) < bound + 2 * regularisation_ ? 1 : 0;
+  return std::min(below, redundant_);
+}
+
 bool SaddleSolver::factorise_finely() {
   const auto row_place = [this](Index r) {
     return static_cast<std::size_t>(safe_.place[static_cast<std::size_t>(n_ + r)]);

@@ -2,14 +2,17 @@
 #include "core/simulate/stepper.hpp"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "core/constraints/linear_rows.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/math/barycentric.hpp"
+#include "core/math/lagrange.hpp"
 #include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/run_words.hpp"
@@ -30,6 +33,47 @@ void Stepper::Loop::step_over(Probe& to, double& h) {
     to = std::move(longer), h *= length;
     return;
   }
+}
+
+// A step that ends in a singular pose, as where its grid brings one: on the polynomial through the states of
+// shorter and longer ones, which rounding leaves their digits. The next step begins there as a run does.
+// Where forces grow without bound towards the pose, as the inverse of what is left to it, none can begin
+// there: it stays a weak end.
+void Stepper::Loop::settle_in_pose(Probe& to, double h) {
+  constexpr std::size_t states = 6;
+  constexpr double apart = 0.01;  // of the structure's size, at most, and of a step:
+  constexpr double share_apart = 0.2;
+  constexpr double least = 1e-4;   // of the structure's size: what does not move is where it is
+  constexpr double unbounded = 2;  // times as large where they are a third as far from it
+  to.report.weak_end = false;
+  const double way = fastest_way(to) / reference_length(base_->structure),
+               share = std::min(share_apart, apart / way);
+  const auto length = [&](std::size_t k) {
+    return 1 + share * (static_cast<double>(k) - (k < states / 2 ? 3 : 2));
+  };
+  if (!(way > least) || to.state.tension.size() > 0 || to.state.stage_tension.size() > 0 ||
+      now().t + length(states - 1) * h > grid_.next_edge(now().t))
+    return;
+  const auto integrator = fresh_integrator();
+  State out = to.state;
+  for (VectorXd* x : {&out.z, &out.w, &out.lambda}) x->setZero();
+  std::array<double, states> force{};
+  for (std::size_t k = 0; k < states; ++k) {
+    State state = now();
+    integrator->restart();
+    const StepReport report = integrator->step(state, length(k) * h);
+    if (!report.ok() || report.weak_end || state.lambda.size() != out.lambda.size()) return;
+    const double weight = lagrange_weight(k, states, 1.0, length);
+    out.z += weight * state.z;
+    out.w += weight * state.w;
+    out.lambda += weight * state.lambda;
+    force[k] = state.lambda.norm();
+  }
+  to.report.weak_end = force[2] > unbounded * force[0] && force[3] > unbounded * force[5];
+  if (to.report.weak_end) return;
+  if (system().followed_angles() > 0) system().at(now()).count_on(out);
+  to.state = std::move(out);
+  integrator_->restart();
 }
 
 namespace {

@@ -90,6 +90,7 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
     to.report = step_in_parts(*integrator_, to.state, h, [this](State& state, double length) {
       return take_step(*integrator_, state, length);
     });
+    if (to.report.weak_end) settle_in_pose(to, h);
   }
   if (!event && !to.report.ok() && may_cross(stepping::near_deployed * h))
     event = locate(h, now().t + 2 * stepping::near_deployed * h);

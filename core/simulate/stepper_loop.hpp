@@ -164,9 +164,10 @@ class Stepper::Loop {
     }
     Probe to{.at = h, .state = now()};
     to.report = take_step(*integrator_, to.state, h);
+    if (to.report.weak_end) settle_in_pose(to, h);
     std::optional<State> event;
     if (!find_deployed(to, h, event)) return false;
-    if (!event && !to.report.ok()) step_over(to, h);
+    if (!event && (!to.report.ok() || to.report.weak_end)) step_over(to, h);
     if (watched() && (event || to.report.ok())) {
       Probe flat;
       if (!to.report.ok()) flat = {.at = event->t - now().t, .state = *event};
@@ -289,6 +290,7 @@ class Stepper::Loop {
   void warn_of_long_step(const Probe& to, const VectorXd& off, const VectorXd& fastest);
 
   bool go_to(Crossing crossing);
+  void settle_in_pose(Probe& to, double h);
 
   // What comes of it that these have crossed, now; `left`: Crossing's. False where the run ends.
   bool act(const std::vector<std::size_t>& which, const VectorXd& left = {}) {

@@ -36,6 +36,8 @@ struct StepReport {
   // The state is a located event at a singular pose; its multipliers are extrapolated from solved states, and
   // cannot be had from the equations there.
   bool singular_event = false;
+  // The pose at its end is so near to a singular one that what rounding leaves of it is told as a velocity.
+  bool weak_end = false;
   bool ok() const { return status == StepStatus::converged; }
 };
 

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Steps that end where rods lie in one line, to the last digit: the rows say nothing of the velocity there,
+// and of the pose the root of round-off.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "tests/support/number.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace ends_in_line_test {
+
+using testing::number;
+using testing::run_scene;
+
+namespace {
+
+// A parallelogram of cranks of 1 m that turn by a quarter of a turn a second, `early` rad before the lowest
+// pose at t = 0: in line 1 s, 3 s, ... later.
+std::string turning(double early, const std::string& driven, double step, int stages, double end) {
+  const double w = pi / 2, x = -std::sin(early), z = -std::cos(early);
+  const auto node = [&](const char* name, double foot) {
+    return "{name = '" + std::string(name) + "', position = [" + number(foot + x) + ", 0, " + number(z) +
+           "], velocity = [" + number(-w * z) + ", 0, " + number(w * x) + "]}";
+  };
+  return "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = "
+         "'D', "
+         "position = [2, 0, 0], fixed = true}, " +
+         node("B", 0) + ", " + node("C", 2) +
+         "]\nrods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['B', 'C'], mass = 1}, {nodes = ['D', 'C'], "
+         "mass = "
+         "1}]\n[[constraints]]\nkind = 'plane'\nnodes = ['B', 'C']\nnormal = [0, 1, 0]\n" +
+         driven + "[solver]\nstep = " + number(step) + "\nstages = " + std::to_string(stages) +
+         "\nend_time = " + number(end) + "\n";
+}
+
+// Of B and C, the largest of all states.
+double off(const Simulation& run, double early) {
+  double most = 0;
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
+    const double turn = pi / 2 * run.trajectory.time(i) - early;
+    const VectorXd q = run.trajectory.positions(i);
+    const Vec3 at(std::sin(turn), 0, -std::cos(turn));
+    most = std::max({most, (q.segment<3>(6) - at).norm(), (q.segment<3>(9) - at - Vec3(2, 0, 0)).norm()});
+  }
+  return most;
+}
+
+}  // namespace
+
+// Six states that are up to 0.01 rad apart tell the pose on the line to the sixth power of that, 5e-14;
+// of 0.016 rad, 1e-10 of those of 0.03; round-off of 1e-16 is up to 1e-10 of a weak mode in others.
+TEST_CASE("an even turn stays even where steps end in line or next to it") {
+  for (const double early : {0.0, 1e-15, 1e-12, 1e-10, 1e-9, 1e-7})
+    for (const double step : {0.01, 0.05, 0.1})
+      for (const int stages : {5, 6, 8}) {
+        INFO(early << " rad, steps of " << step << " s, " << stages << " stages");
+        const Simulation run = run_scene(turning(early, "", step, stages, 3.5));
+        CHECK(run.status == RunStatus::completed);
+        CHECK(run.trajectory.end_time() == 3.5);
+        CHECK(off(run, early) < 2e-10);
+      }
+}
+
+// Weight across the line asks for forces without bound there: no step begins on it, and the grid goes on
+// behind it. A drive leaves the motion no choice.
+TEST_CASE("a driven turn under weight passes the line whatever its steps") {
+  const std::string drive =
+      "[gravity]\nacceleration = [0, 0, -9.81]\n[[constraints]]\nkind = 'angle'\nname = 'm'\nnodes = ['D', "
+      "'A', "
+      "'B']\naxis = [0, 1, 0]\nmotion = 'rate'\nrate = -90\n";
+  for (const double step : {0.01, 0.02, 0.05, 0.1})
+    for (const int stages : {3, 5, 8}) {
+      INFO("steps of " << step << " s, " << stages << " stages");
+      const Simulation run = run_scene(turning(0, drive, step, stages, 4));
+      INFO(run.message);
+      CHECK(run.status == RunStatus::completed);
+      CHECK(run.trajectory.end_time() == 4);
+      CHECK(off(run, 0) < 1e-12);
+    }
+}
+
+}  // namespace ends_in_line_test
