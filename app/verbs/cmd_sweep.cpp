@@ -103,7 +103,8 @@ void warn_of_unanswered(const SweepPlan& plan, const Sweep& sweep, const std::st
     const auto set = [&](const std::string& change) { words.insert(words.end(), {"--set", change}); };
     for (const std::string& change : arguments.overrides) set(change);
     for (std::size_t a = 0; a < outcome; ++a) set(plan.axes[a].key + "=" + (*first)[a]);
-    set("solver.model=" + model);
+    if (std::ranges::none_of(plan.axes, [](const auto& axis) { return axis.key == "solver.model"; }))
+      set("solver.model=" + model);
     std::cerr << as_typed(words) << " tells why\n";
   }
 }

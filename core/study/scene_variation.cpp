@@ -78,6 +78,7 @@ SolverOptions study_solver(const Scene& scene, const std::vector<std::string>& v
                            const std::vector<RunMeasure>& measures) {
   SolverOptions options = scene.solver;
   if (scene.locations.contains("solver.model") && options.model != "auto") return options;
+  if (std::ranges::find(varied, "solver.model") != varied.end()) return options;
   const auto of_method = [](const std::string& key) {
     return key.starts_with("solver.") && key != "solver.end_time" && key != "solver.at_deployed";
   };

@@ -37,8 +37,8 @@ SceneSource scene_source(const std::string& path, const std::vector<std::string>
 std::string unexpanded_text(const SceneSource& source);
 
 // The solver of a scene of which many are run: its model is "auto" where the scene says that or nothing, but
-// "full" where a key that is varied, or a measure, is about the method itself. Written out with the scene it
-// makes the same numbers again.
+// "full" where a key that is varied, or a measure, is about the method itself; a model that is varied is that
+// of its point. Written out with the scene it makes the same numbers again.
 SolverOptions study_solver(const Scene& scene, const std::vector<std::string>& varied,
                            const std::vector<RunMeasure>& measures);
 

@@ -165,6 +165,15 @@ TEST_CASE("many runs go by the model that costs least, unless the method itself 
   CHECK(study_solver(scene, {}, {}).step == 0.02);
 }
 
+TEST_CASE("a model that is varied is that of its point whatever else is asked") {
+  for (const char* given : {"auto", "path", "sector", "full"}) {
+    const Scene point = source({std::string("solver.model=") + given}).read();
+    CHECK(study_solver(point, {"solver.model"}, {find_measure("deploy_time")}).model == given);
+    CHECK(study_solver(point, {"solver.step", "solver.model"}, {find_measure("newton_iterations")}).model ==
+          given);
+  }
+}
+
 TEST_CASE("a variable of which a key of the method is worked out is about the method") {
   const auto model = [](const std::string& solver, const std::string& key) {
     const std::string text = R"([variables]
