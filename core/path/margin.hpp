@@ -98,7 +98,8 @@ struct StuckHinge {
   double stall_fold = 0.0;     // its fold angle [rad]
   double turn = 0.0;           // of the hinge from the start to the end [rad]
 };
-// Every hinge that turns, then, where they are no more than most_for_pairs, every two of them, jammed alike.
+// Every hinge that turns, or where the motion stalls at its start or sets out the other way would turn, with
+// no torque to stall it; then, where they are no more than most_for_pairs, every two of them, jammed alike.
 // Where all that acts depends on the pose alone the stall follows from the energy of the motion without the
 // jam, K(s) = torque times the angle turned so far. Dampers, motors and loads over time act otherwise in a
 // slower motion: there it is the torque at which the motion with the jam comes to rest on its way, with

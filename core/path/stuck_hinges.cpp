@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constraints/linear_rows.hpp"
 #include "core/math/golden_section.hpp"
 #include "core/path/hinge_turns.hpp"
 #include "core/path/margin.hpp"
@@ -35,7 +36,12 @@ class StuckMaker {
         motion_(model, options, path_, factors_of(margin)) {
     for (const MarginReach& reach : margin_.motion) poses_.push_back(pose(reach.s));
     for (const MarginPoint& point : margin_.points) points_.push_back(pose(point.s));
-    for (const Hinge& hinge : hinges_of(structure_)) take(hinge);
+    const std::vector<Hinge> hinges = hinges_of(structure_);
+    for (const Hinge& hinge : hinges) take(hinge);
+    if (hinges_.empty() && (margin_.end == MarginEnd::stalls || margin_.end == MarginEnd::other_way)) {
+      at_once_ = true;
+      for (const Hinge& hinge : hinges) take(hinge);
+    }
     for (std::size_t j = 0; j < margin_.points.size(); ++j)
       rest_.push_back(rest_force(margin_.points[j].s, margin_.points[j].t));
     by_pose_ = depends_on_pose();
@@ -57,7 +63,7 @@ class StuckMaker {
     const double end = margin_.end == MarginEnd::stalls ? options_.end_time : margin_.motion.back().t;
     motion_.run(margin_.sense, std::nullopt, end, false);
     for (const Some& some : all) out.push_back(stuck(some));
-    if (!by_pose_)
+    if (!by_pose_ && !at_once_)
       for (std::size_t i = 0; i < all.size(); ++i) stall_by_motion(all[i], out[i]);
     for (std::size_t i = 0; i < all.size(); ++i) {
       const double none = no_torque * first_guess(all[i]);
@@ -112,8 +118,13 @@ class StuckMaker {
       }
       turns.turned.push_back(turns.turned.back() + turn);
     }
-    if (turns.turned.back() < still) return;
-    for (const Pose& at : points_) turns.rate_in_point.push_back(std::abs(hinge_rate(hinge, at.q, at.dq)));
+    const double size = reference_length(structure_);
+    bool would_turn = false;
+    for (const Pose& at : points_) {
+      turns.rate_in_point.push_back(std::abs(hinge_rate(hinge, at.q, at.dq)));
+      would_turn |= turns.rate_in_point.back() * size > still * at.dq.cwiseAbs().maxCoeff();
+    }
+    if (turns.turned.back() < still && !(at_once_ && would_turn)) return;
     hinges_.push_back(hinge);
     turns_.push_back(std::move(turns));
   }
@@ -157,7 +168,13 @@ class StuckMaker {
       out.name += (out.name.empty() ? "" : " and ") + hinges_[i].name;
       out.turn += turns_[i].turned.back();
     }
-    if (by_pose_) stall_by_energy(some, out);
+    if (at_once_) {
+      out.stall_torque = 0;
+      out.stall_at = margin_.motion.back().s;
+      out.stall_fold = fold_angle(out.stall_at);
+    } else if (by_pose_) {
+      stall_by_energy(some, out);
+    }
     return out;
   }
 
@@ -326,6 +343,7 @@ class StuckMaker {
   std::vector<Hinge> hinges_;         // that turn
   std::vector<Turns> turns_;          // of those
   std::vector<double> rest_;
+  bool at_once_ = false;  // no hinge has turned where the motion ends, and those stand here that would
   bool by_pose_ = true;
   std::unique_ptr<HingeRates> rates_;
   std::unique_ptr<PathTable> table_;

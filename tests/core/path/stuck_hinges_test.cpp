@@ -327,6 +327,51 @@ TEST_CASE("a jam with loads over time stalls the motion where it rests, not wher
   }
 }
 
+// A parallelogram that friction, or a load the other way, keeps from setting out: both its hinges turn on the
+// way on which it does not go, and no jam is needed to stall it. A triangle that slides has none that turn.
+TEST_CASE("hinges of a motion that stalls at its start or sets out the other way are told with no torque") {
+  const std::string linkage = R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [0, 0, 1]},
+  {name = "C", position = [1, 0, 1]}, {name = "D", position = [1, 0, 0], fixed = true}]
+rods = [{nodes = ["A", "B"], mass = 1}, {nodes = ["B", "C"], mass = 1}, {nodes = ["C", "D"], mass = 1}]
+constraints = [{kind = "plane", nodes = ["*"], normal = [0, 1, 0]}]
+[deployment]
+measure = "angle D A B"
+deployed = 30
+)";
+  const std::string slider = R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0]}, {name = "B", position = [1, 0, 0]},
+  {name = "C", position = [1, 0, 1]}, {name = "D", position = [9, 0, 0], fixed = true}]
+rods = [{nodes = ["A", "B"], mass = 1}, {nodes = ["B", "C"], mass = 1}, {nodes = ["C", "A"], mass = 1}]
+constraints = [{kind = "plane", nodes = ["*"], normal = [0, 1, 0]}, {kind = "plane", nodes = ["A", "B"], normal = [0, 0, 1]}]
+[deployment]
+measure = "length A D"
+deployed = 7
+)";
+  const auto load = [](const std::string& x) {
+    return "[[loads]]\nnodes = [\"C\"]\nforce = [" + x + ", 0, 0]\n";
+  };
+  const auto timed = [](const std::string& x) {
+    return "[[forces]]\nkind = \"load_over_time\"\nnodes = [\"C\"]\nforce = [" + x +
+           ", 0, 0]\ntimes = [0, 1]\nvalues = [1, 0.9]\n";
+  };
+  const auto friction = [](const std::string& nodes) {
+    return "[[forces]]\nkind = \"friction\"\nnodes = [" + nodes + "]\nkinetic = 1e9\n";
+  };
+  for (const std::string& more : {load("2") + friction("\"A\", \"B\", \"C\""), load("-2"),
+                                  timed("2") + friction("\"A\", \"B\", \"C\""), timed("-2")}) {
+    INFO(more);
+    const auto hinges = stuck_in(read_scene_text(linkage + more, "held.toml"));
+    REQUIRE(hinges.size() == 2);
+    for (const StuckHinge& hinge : hinges)
+      CHECK((hinge.stall_torque == 0 && hinge.static_torque == 0 && hinge.stall_at == 0 && hinge.turn == 0));
+  }
+  for (const std::string& more : {load("2") + friction("\"A\", \"D\""), load("-2")})
+    CHECK(stuck_in(read_scene_text(slider + more, "slider.toml")).empty());
+}
+
 // One scissor: two rods l on a pin in their middle, pushed up by F on both tips (half of it each), so that by
 // the angle p of the rods with the axis the force has gone l (cos p - cos p_0), while the rods turn against
 // each other by 2 (p_0 - p). At rest the pin holds F l sin p / 2.
