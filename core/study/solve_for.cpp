@@ -53,6 +53,8 @@ class Search {
         seen_.empty() || !std::isfinite(seen_.front().value) ? 0 : std::abs(seen_.front().value);
     return exact(e) || off(e) <= (target_ == 0 ? 1e-30 * first : 4e-16 * std::abs(target_));
   }
+  // To where the measure is not there.
+  static double closest(double x) { return 1e-9 * std::max(std::abs(x), 1e-3); }
   bool opposite(const Evaluation& a, const Evaluation& b) const {
     return valid(a) && valid(b) && (a.value < target_) != (b.value < target_);
   }
@@ -123,7 +125,7 @@ class Search {
     if (!valid(next)) {
       side.walled = true;
       side.stride /= 2;
-      side.open = std::abs(side.stride) > 1e-9 * std::max(std::abs(side.last.x), 1e-3);
+      side.open = std::abs(side.stride) > closest(side.last.x);
       return false;
     }
     if (met) {
@@ -135,7 +137,7 @@ class Search {
     side.before = std::exchange(side.last, next);
     side.stride *= side.walled ? 0.5 : 2;
     const double far = std::abs(side.last.x - o_.start), unit = std::max(std::abs(o_.start), 1.0);
-    side.open = std::abs(side.stride) > 1e-9 * std::max(std::abs(side.last.x), 1e-3) && far < 1e9 * unit;
+    side.open = std::abs(side.stride) > closest(side.last.x) && far < 1e9 * unit;
     return false;
   }
 
@@ -170,6 +172,29 @@ class Search {
     return false;
   }
 
+  // Where between the ends the measure is not there: from both towards that by halving, until the root is on
+  // one side.
+  void leave(const Evaluation& hole) {
+    double edges[] = {hole.x, hole.x};
+    for (bool open = true; open;) {
+      open = false;
+      for (const bool second : {false, true}) {
+        Evaluation& end = second ? b_ : a_;
+        double& edge = edges[second ? 1 : 0];
+        if (std::abs(edge - end.x) <= closest(end.x)) continue;
+        open = true;
+        const Evaluation e = at(0.5 * (end.x + edge));
+        if (exact(e)) return void(a_ = b_ = e);
+        if (opposite(end, e)) return void((second ? a_ : b_) = e);
+        if (valid(e))
+          end = e;
+        else
+          edge = e.x;
+      }
+    }
+    give_up_at(hole, "the measure is not there for a parameter of " + short_number(hole.x, 9));
+  }
+
   void refine() {
     int side = 0;  // which end stayed last time (Illinois)
     bool tried_nothing = false;
@@ -190,7 +215,12 @@ class Search {
         a_ = b_ = best_ = e;
         return;
       }
-      if (!valid(e)) give_up_at(e, "the measure is not there for a parameter of " + short_number(x, 9));
+      if (!valid(e)) {
+        leave(e);
+        fa = a_.value - target_, fb = b_.value - target_;
+        side = 0;
+        continue;
+      }
       const double fe = e.value - target_;
       if ((fe < 0) == (fa < 0)) {
         a_ = e, fa = fe;

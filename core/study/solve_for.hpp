@@ -42,7 +42,8 @@ struct NotFound : Error {
 
 // A root of f - target by bracketing: from `start` outwards, steps doubled, halved again where x becomes
 // invalid, until the sign changes, with a closer look where values come nearer and go again; then regula
-// falsi with bisection as safeguard (ITP-like: never slower than bisection by more than a factor of two).
+// falsi with bisection as safeguard (ITP-like: never slower than bisection by more than a factor of two), on
+// the side of the root where x is invalid between the ends.
 // Throws NotFound, Cancelled.
 Solved solve_for(const Objective& f, double target, const SolveOptions& options, const StudyHooks& hooks);
 

@@ -180,6 +180,26 @@ TEST_CASE("a target that two strides of one sign step over is found where values
   CHECK(runs <= 74);
 }
 
+TEST_CASE("a root beside a hole in a measure is found from both sides of the hole") {
+  for (const double sign : {1.0, -1.0}) {
+    const auto f = [&](double x) {  // as one of runs that fail between 2 and 2.7
+      const double y = sign * x;
+      return y > 2 && y < 2.7 ? none : std::pow(y, 5);
+    };
+    // The ways halve towards where the first run failed, which no one is to know: 1.5 or 3 may be met
+    // exactly.
+    for (const double root : {1.1, 1.5, 1.999, 2.701, 3.0, 3.9}) {
+      INFO(sign << " " << root);
+      const double a = sign * 1, b = sign * 4;
+      const Solved s = solve_for(f, std::pow(root, 5), {.low = std::min(a, b), .high = std::max(a, b)}, {});
+      CHECK(s.x == Approx(sign * root).epsilon(1e-11));
+      CHECK(s.evaluations.size() < 60);
+    }
+    CHECK_THROWS_WITH(solve_for(f, 60, {.low = sign > 0 ? 2.0 : -4.0, .high = sign > 0 ? 4.0 : -2.0}, {}),
+                      Catch::StartsWith("the measure is not there for a parameter of "));
+  }
+}
+
 TEST_CASE("a jump over the target is no root") {
   CHECK_THROWS_WITH(solve_for([](double x) { return x < 2 ? 0.0 : 10.0; }, 5, {.start = 1}, {}),
                     Catch::Contains("jumps over the target at 2"));
