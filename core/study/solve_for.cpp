@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/simulate/simulation.hpp"
@@ -10,6 +11,8 @@
 
 namespace unfurl {
 namespace {
+
+constexpr double last_digits = 1e-12;  // of a target: a measure that comes so near and no nearer meets it
 
 class Search {
  public:
@@ -100,7 +103,11 @@ class Search {
       const bool both = up.first.x != start.x && down.first.x != start.x;
       if (both && !std::exchange(looked, true) && in_dip(down.first, start, up.first)) return;
     }
+    if (off(best_) <= last_digits * std::abs(target_)) return void(a_ = b_ = best_);  // beside a wall, too
     give_up("the target is not reached on either side of " + short_number(o_.start, 9) +
+            (valid(turns_) ? "; it comes as near as " + short_number(turns_.value, 9) + " at " +
+                                 short_number(turns_.x, 9) + " and turns back there"
+                           : "") +
             (too_long_.empty()
                  ? ""
                  : "; at " + too_long_ + " a run takes too long to look further (--between does)"));
@@ -142,24 +149,27 @@ class Search {
   }
 
   // Values of one side of the target of which that in the middle is nearest: others between them may lie on
-  // the other side. A golden section, until what is left of the dip could not reach there: it falls by its
-  // height once more at most where its parts are equal and it is convex, here by twice that.
+  // the other side, or on it. A golden section, until what is left of the dip could not reach there: it falls
+  // by its height once more at most where its parts are equal and it is convex, here by twice that.
   bool in_dip(Evaluation before, Evaluation middle, Evaluation behind) {
-    constexpr int most_looks = 40;
-    const double nothing = 0;  // where many measures have their least
+    constexpr int most_looks = 60;  // to 3e-13 of the width
+    const double nothing = 0;       // where many measures have their least
+    if (off(before) < off(middle) || off(behind) < off(middle)) return false;
+    const Touch touch = touch_of(before, middle, behind);
+    bool reaches = true;
     for (int look = 0; look < most_looks; ++look) {
       const double height = std::max(off(before), off(behind)) - off(middle);
       const double left = middle.x - before.x, right = behind.x - middle.x;
       const double ratio = std::max(left / right, right / left);
-      if (off(before) < off(middle) || off(behind) < off(middle) || !(off(middle) < 2 * ratio * height))
-        return false;
+      reaches = off(middle) < 2 * ratio * height;
+      if (!reaches) break;
       constexpr double golden = 0.3819660112501051;
       double x = middle.x + golden * (std::abs(left) < std::abs(right) ? right : -left);
       if (look == 0 && (before.x < nothing) != (behind.x < nothing) && middle.x != nothing) x = nothing;
       const bool is_behind = (x - middle.x) * right > 0;
-      if (x == middle.x || x == before.x || x == behind.x) return false;
+      if (x == middle.x || x == before.x || x == behind.x) break;
       const Evaluation e = at(x);
-      if (!valid(e)) return false;
+      if (!valid(e)) break;
       if (meets(e) || opposite(middle, e)) {
         b_ = e, a_ = exact(e) || opposite(middle, e) ? (is_behind ? middle : before) : e;
         return true;
@@ -168,8 +178,29 @@ class Search {
         (is_behind ? before : behind) = std::exchange(middle, e);
       else
         (is_behind ? behind : before) = e;
+      if (!valid(turns_) || off(middle) < off(turns_)) turns_ = middle;
     }
-    return false;
+    if (!(off(middle) <= (reaches ? touch.by_width : touch.by_rounding))) return false;
+    a_ = b_ = middle;
+    return true;
+  }
+
+  // How near to the target a dip touches it that was looked at to its last digits, or until rounding hid it.
+  // Next to its least the measure differs by c |x - x_0| or c |x - x_0|^2: by 1e-12 of the dip's height that
+  // is 1e-12 or 1e-6 of its width. Rounding: the last four digits of the target, the last of the values.
+  struct Touch {
+    double by_width, by_rounding;
+  };
+  Touch touch_of(const Evaluation& before, const Evaluation& middle, const Evaluation& behind) const {
+    double height = 0, size = 0;
+    for (const Evaluation& e : {before, middle, behind})
+      if (std::isfinite(e.value)) {
+        height = std::max(height, off(e) - off(middle));
+        size = std::max(size, std::abs(e.value));
+      }
+    const double slope = height / std::abs(behind.x - before.x);
+    return {1e-12 * height + 1e-15 * slope * std::abs(middle.x),
+            std::max(last_digits * std::abs(target_), 1e-15 * size)};
   }
 
   // Where between the ends the measure is not there: from both towards that by halving, until the root is on
@@ -252,6 +283,8 @@ class Search {
   const SolveOptions& o_;
   const StudyHooks& hooks_;
   Evaluation a_, b_, best_;
+  Evaluation turns_{0,
+                    std::numeric_limits<double>::quiet_NaN()};  // the nearest of a dip that was looked into
   std::vector<Evaluation> seen_;
   int slow_ = 0;
   double took_ = 0, first_took_ = 0;  // [s]

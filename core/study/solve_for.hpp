@@ -44,7 +44,7 @@ struct NotFound : Error {
 // invalid, until the sign changes, with a closer look where values come nearer and go again; then regula
 // falsi with bisection as safeguard (ITP-like: never slower than bisection by more than a factor of two), on
 // the side of the root where x is invalid between the ends.
-// Throws NotFound, Cancelled.
+// An extremum on the target, to rounding, is met, too. Throws NotFound, Cancelled.
 Solved solve_for(const Objective& f, double target, const SolveOptions& options, const StudyHooks& hooks);
 
 }  // namespace unfurl

@@ -180,6 +180,49 @@ TEST_CASE("a target that two strides of one sign step over is found where values
   CHECK(runs <= 74);
 }
 
+// The least or most of a measure: from one side alone, and nothing lies beyond. Next to it the measure
+// differs by c |x - x_0|^p, so that a value met to 1e-12 of the values of strides (some 3 |x_0| + 3 away at
+// most) is an x within 1e-12 or 1e-6 of that; its own rounding, 1e-16 of 4, is less.
+TEST_CASE("a target that is the least or the most of a measure is met where it is touched and nowhere else") {
+  std::mt19937 dice(11);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int trial = 0; trial < 400; ++trial) {
+    const double power = trial % 2 == 0 ? 1 : 2, sign = trial % 4 < 2 ? 1 : -1, lean = 1.5 * any(dice);
+    const double target = trial % 3 == 0 ? 0 : 4 * any(dice), at = trial % 5 == 0 ? 100 : 5 * any(dice);
+    const double start = at + 20 * any(dice);
+    const auto beyond = [&](double miss) {
+      return [=](double x) {
+        return target + sign * (miss + (x < at ? 2 + lean : 2.0) * std::pow(std::abs(x - at), power));
+      };
+    };
+    CAPTURE(trial, power, sign, lean, target, at, start);
+    const Solved s = solve_for(beyond(0), target, {.start = start}, {});
+    const double stride = 3 * std::max(std::abs(start - at), std::abs(at)) + 3;
+    CHECK(std::abs(s.x - at) < stride * (power == 1 ? 1e-11 : 3e-6));
+    CHECK(std::abs(s.value - target) <= 1e-11 * std::pow(stride, power));
+    CHECK(s.evaluations.size() < 150);
+    for (const double miss : {1e-2, 1e-5, 1e-7})
+      CHECK_THROWS_WITH(solve_for(beyond(miss), target, {.start = start}, {}),
+                        Catch::StartsWith("the target is not reached on either side of"));
+  }
+  CHECK_THROWS_WITH(solve_for([](double x) { return (x - 3) * (x - 3) + 5; }, 4.99999, {.start = 1}, {}),
+                    Catch::Contains("it comes as near as 5.0") && Catch::Contains(" and turns back there"));
+  // What falls on and on is not touched before, however small it is beside what it was.
+  CHECK(solve_for([](double x) { return std::exp(x); }, 1e-300, {.start = 1}, {}).x ==
+        Approx(-300 * std::log(10)).epsilon(1e-11));
+  // The least beside a wall, which is approached to 1e-9.
+  const auto edge = [](double x) { return x < 3 ? none : 2 + 1e-3 * (x - 3); };
+  CHECK(solve_for(edge, 2, {.start = 4}, {}).x == Approx(3).epsilon(2e-9));
+  // A least of zero where there is no measure: no mass, no energy.
+  const auto massless = [](double x) { return std::abs(x - 5) < 1e-8 ? none : (x - 5) * (x - 5); };
+  CHECK(solve_for(massless, 0, {.start = 1}, {}).x == Approx(5).epsilon(1e-6));
+  // The end of what is endless, or of a jump, is no touch.
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double left : {10.0, infinity})
+    CHECK_THROWS_AS(solve_for([&](double x) { return x < 3 ? left : 2 + x; }, 5 - 1e-9, {.start = 4}, {}),
+                    NotFound);
+}
+
 TEST_CASE("a root beside a hole in a measure is found from both sides of the hole") {
   for (const double sign : {1.0, -1.0}) {
     const auto f = [&](double x) {  // as one of runs that fail between 2 and 2.7
