@@ -8,6 +8,7 @@
 #include "core/constraints/constraint.hpp"
 #include "core/constraints/linear_rows.hpp"
 #include "core/forces/latch_spring.hpp"
+#include "core/text/nearest_name.hpp"
 
 namespace unfurl {
 namespace {
@@ -49,6 +50,12 @@ std::string unknown_motor(const Force& force) {
 
 bool is_cable(const Force& force) {
   return force.one_sided && (force.stiffness > 0 || force.damping > 0);
+}
+
+bool has_no_axis(const Measure& measure) {
+  return (measure.kind == MeasureKind::angle && measure.axis.isZero(0.0)) ||
+         std::ranges::any_of(measure.terms,
+                             [](const MeasureTerm& term) { return has_no_axis(term.measure); });
 }
 
 // So fast that forces at rest are below the rounding of what dampers give; products with it are exact.
@@ -97,6 +104,8 @@ PathForces::PathForces(const Structure& structure, const Path& path, bool separa
     source.timed = size != nullptr;
     if (size) source.size = *size;
     const bool own = separately || size || cable || kind == "friction";
+    source.turns_back =
+        std::ranges::any_of(one.forces, [](const Force& force) { return has_no_axis(force.measure); });
     source.position = own ? columns_++ : 0;
     source.damping = own ? columns_++ : 1;
     if (cable) {
@@ -196,6 +205,16 @@ VectorXd PathForces::first_angles() const {
     angles.segment(remaining_angles_, own.size()) = own;
   }
   return angles;
+}
+
+std::string PathForces::whose(Index column) const {
+  const auto acts = [&](const Source& source) {
+    return source.turns_back && (source.position == column || source.damping == column);
+  };
+  const auto found = std::ranges::find_if(sources_, acts);
+  return found == sources_.end() ? ""
+                                 : ": the angle that " + in_quotes(found->name) +
+                                       " acts on turns back where its sides lie in line; give it an axis";
 }
 
 void PathForces::evaluate(const VectorXd& q, const VectorXd& dq, VectorXd& angles, VectorXd& value,

@@ -30,7 +30,8 @@ class PathForces final : public PathFunctions {
     Index position = 0, damping = -1;  // columns of the table; -1: it does not damp
     bool timed = false;                // then the position's column is for size 1
     TimeFunction size = {};
-    int cable = -1;     // index in `cables`
+    int cable = -1;           // index in `cables`
+    bool turns_back = false;  // it acts on an angle without an axis, which does where its sides lie in line
     int friction = -1;  // index in `frictions`; the position's column is then -ds/dpath of its measure s
     // What rounding of the time leaves in the size, in its coefficients over a step.
     double size_noise(double t) const { return timed ? 4e-15 * std::abs(t * size.derivative(1, t)) : 0.0; }
@@ -61,6 +62,7 @@ class PathForces final : public PathFunctions {
   VectorXd first_angles() const override;
   void evaluate(const VectorXd& q, const VectorXd& dq, VectorXd& angles, VectorXd& value,
                 VectorXd& scale) const override;
+  std::string whose(Index column) const override;
 
  private:
   struct Term {

@@ -104,7 +104,7 @@ void PathMotion::advance(PathLaw& law, double latest) {
   if (!(h_ > 0)) h_ = 0.01 * (latest - t_);
   ScalarStep step;
   if (!scalar_step(law, t_, s_, v_, latest, h_, step)) {
-    if (law.table().rough()) throw PathRefused("what acts on the structure is not smooth along its path");
+    law.table().refuse_rough();
     throw PathRefused("at t = " + seconds(t_) +
                       ": the path cannot be followed any further, or the motion on it not be resolved");
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace unfurl {
 namespace {
@@ -17,12 +18,12 @@ constexpr int table_tail_size = 2, most_cuts = 12;
 // to the next. What the tangent of a piece has of it a part of the piece resolves as if it were more.
 constexpr double noise_of_tail = 5;
 
-// The largest of the last coefficients as a share of its function's scale.
-double table_tail(const MatrixXd& c, const VectorXd& scale) {
-  double most = 0;
+// The largest of the last coefficients as a share of its function's scale, and which function's.
+std::pair<double, Index> table_tail(const MatrixXd& c, const VectorXd& scale) {
+  std::pair<double, Index> most{0.0, 0};
   for (Index f = 0; f < c.cols(); ++f) {
     const double last = c.col(f).tail(table_tail_size).cwiseAbs().maxCoeff();
-    if (last > 0) most = std::max(most, last / scale[f]);
+    if (last > 0 && last / scale[f] > most.first) most = {last / scale[f], f};
   }
   return most;
 }
@@ -41,9 +42,19 @@ PathTable::PathTable(const Path& path, const PathFunctions& functions) : path_(p
 
 const PathTable::Segment* PathTable::segment(double s) {
   const Segment* found = segment_within_reach(s);
-  if (!found && (s >= 0 ? forward_ : backward_).rough)
-    throw PathRefused("what acts on the structure is not smooth along its path");
+  if (!found) refuse_rough(s >= 0 ? forward_ : backward_);
   return found;
+}
+
+void PathTable::refuse_rough(const Side& side) const {
+  if (side.rough >= 0)
+    throw PathRefused("what acts on the structure is not smooth along its path" +
+                      functions_.whose(side.rough));
+}
+
+void PathTable::refuse_rough() const {
+  refuse_rough(forward_);
+  refuse_rough(backward_);
 }
 
 const PathTable::Segment* PathTable::segment_within_reach(double s) {
@@ -66,10 +77,10 @@ ValueAndSlope PathTable::at(Index function, double s) {
 
 bool PathTable::extend(Side& side, bool forward) {
   const PathPiece* piece = path_.piece(forward ? side.pieces : -side.pieces - 1);
-  if (!piece || side.rough) return false;
+  if (!piece || side.rough >= 0) return false;
   ++side.pieces;
   const std::size_t before = side.segments.size();
-  side.rough = !tabulate(*piece, forward ? -1.0 : 1.0, forward ? 1.0 : -1.0, {}, side, forward);
+  tabulate(*piece, forward ? -1.0 : 1.0, forward ? 1.0 : -1.0, {}, side, forward);
   return side.segments.size() > before;
 }
 
@@ -107,9 +118,9 @@ bool PathTable::tabulate(const PathPiece& piece, double from, double to, Cut cut
     out.scale = out.scale.cwiseMax(scale);
   }
   out.c = (values * chebyshev_transform(table_points)).transpose();
-  const double left = table_tail(out.c, out.scale);
+  const auto [left, worst] = table_tail(out.c, out.scale);
   if (!(left <= table_resolved || (left <= table_rough && left > no_gain * cut.before))) {
-    if (cut.depth == most_cuts || !values.allFinite()) return false;
+    if (cut.depth == most_cuts || !values.allFinite()) return side.rough = worst, false;
     const Cut next{cut.depth + 1, left};
     return tabulate(piece, from, 0.5 * (from + to), next, side, forward) &&
            tabulate(piece, 0.5 * (from + to), to, next, side, forward);

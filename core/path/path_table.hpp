@@ -3,7 +3,7 @@
 #pragma once
 
 #include <deque>
-#include <functional>
+#include <string>
 
 #include "core/math/chebyshev.hpp"
 #include "core/path/path.hpp"
@@ -20,6 +20,8 @@ class PathFunctions {
   // scale: what counts as large, of each value; its round-off is some 1e-16 of that.
   virtual void evaluate(const VectorXd& q, const VectorXd& dq, VectorXd& angles, VectorXd& value,
                         VectorXd& scale) const = 0;
+  // Whose a function is that is not smooth, behind "what acts is not smooth"; empty: nobody's in particular.
+  virtual std::string whose(Index) const { return ""; }
 };
 
 // Tabulated piece by piece as it is asked for, outwards from s = 0, in parts of pieces where it takes such.
@@ -41,8 +43,8 @@ class PathTable {
   const Segment* segment(double s);
   // nullptr in both cases: of trial steps, which may look further than the motion gets.
   const Segment* segment_within_reach(double s);
-  bool rough() const { return forward_.rough || backward_.rough; }  // somewhere that it was asked for
-  ValueAndSlope at(Index function, double s);                       // NaN where the path does not go
+  void refuse_rough() const;  // throws PathRefused where a function was not smooth that was asked for
+  ValueAndSlope at(Index function, double s);  // NaN where the path does not go
   const Path& path() const { return path_; }
   const PathFunctions& functions() const { return functions_; }
 
@@ -51,12 +53,13 @@ class PathTable {
     std::deque<Segment> segments;  // outwards
     VectorXd angles;               // at its end
     long pieces = 0;
-    bool rough = false;  // at its end, where it ends
+    Index rough = -1;  // the function that is not smooth at its end, where it ends
   };
   struct Cut {
     int depth = 0;
     double before = std::numeric_limits<double>::infinity();  // tail of what was cut
   };
+  void refuse_rough(const Side& side) const;
   bool extend(Side& side, bool forward);
   bool tabulate(const PathPiece& piece, double from, double to, Cut cut, Side& side, bool forward);
 

@@ -410,6 +410,40 @@ TEST_CASE("no margin where there is no path, or a drive does what it is told") {
   CHECK(refusal("chain").find("degrees of freedom") != std::string::npos);
 }
 
+// A rod on a fixed hinge, which its load takes past the line with another one: there the angle between both
+// turns back, and with an axis it goes on.
+TEST_CASE("no margin names what acts on an angle that turns back and its cure gives one") {
+  const auto text = [](const std::string& entry, const std::string& axis) {
+    return R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [-1, 0, 0], fixed = true}, {name = "B", position = [0, 0, 0], fixed = true},
+  {name = "C", position = [0.6, 0, 0.8]}, {name = "D", position = [0, 0, -1], fixed = true}]
+rods = [{nodes = ["A", "B"], mass = 1}, {nodes = ["B", "C"], mass = 1}]
+constraints = [{kind = "plane", nodes = ["C"], normal = [0, 1, 0]}]
+[[loads]]
+nodes = ["C"]
+force = [0, 0, -9]
+[[forces]]
+nodes = ["A", "B", "C"]
+)" + entry +
+           axis +
+           R"(
+[deployment]
+measure = "length D C"
+deployed = 1
+)";
+  };
+  for (const std::string entry :
+       {"kind = \"friction\"\nname = \"own\"\nkinetic = 0.1\n",
+        "kind = \"torsion_spring\"\nname = \"own\"\nstiffness = 0.1\n",
+        "kind = \"motor\"\nname = \"own\"\nstall_torque = 0.1\nno_load_speed = 100\n"}) {
+    CHECK_THROWS_WITH(
+        margin_in(read_scene_text(text(entry, ""), "own.toml")),
+        Catch::Contains("the angle that 'own' acts on turns back") && Catch::Contains("give it an axis"));
+    CHECK(margin_in(read_scene_text(text(entry, "axis = [0, 1, 0]"), "own.toml")).points.back().s > 0);
+  }
+}
+
 // A lies straight above P, which its guide and the plane hold: to first order A can move sideways, and no
 // further than that.
 TEST_CASE("no margin where no path leads on from the start") {
