@@ -135,8 +135,7 @@ void warn(const std::vector<std::string>& texts) {
 
 py::dict sweep_scene(const SceneSource& given, const std::vector<std::pair<std::string, AxisValues>>& vary,
                      const std::vector<std::string>& measures, int threads, const std::string& folder) {
-  const SceneSource source = as_now(given);
-  SweepPlan plan{source, {}, {}, {}};
+  SweepPlan plan{as_now(given), {}, {}, {}};
   for (const auto& [key, values] : vary) {
     SweepAxis axis;
     axis.key = key;
@@ -148,7 +147,8 @@ py::dict sweep_scene(const SceneSource& given, const std::vector<std::pair<std::
     }
     plan.axes.push_back(std::move(axis));
   }
-  const auto columns = columns_of(build_model(source.read()));
+  stand_on_a_point(plan);
+  const auto columns = columns_of(build_model(plan.source.read()));
   for (const std::string& name : measures) plan.measures.push_back(find_measure(name, columns));
   Asker asker;
   std::mutex mutex;
@@ -176,7 +176,8 @@ py::dict sweep_scene(const SceneSource& given, const std::vector<std::pair<std::
 
 double solve_scene(const SceneSource& given, const std::string& key, const std::string& measure_name,
                    double target, const std::optional<std::pair<double, double>>& between) {
-  const SceneSource source = as_now(given);
+  SceneSource source = as_now(given);
+  if (between) source = valid_source(source, {{key + "=" + exact_number(between->first)}});
   const Scene scene = source.read();
   const RunMeasure measure = find_measure(measure_name, columns_of(build_model(scene)));
   if (is_whole_number(scene, key))

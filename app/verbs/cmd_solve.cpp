@@ -103,7 +103,9 @@ int cmd_solve(const Arguments& arguments) {
   const StudyArguments& study = arguments.study;
   if (study.find.empty()) throw UsageError("--find KEY is missing");
   if (study.target.empty()) throw UsageError("--target NAME=VALUE is missing");
-  const SceneSource source = scene_source(find_scene(arguments.names.front()), arguments.overrides);
+  SceneSource source = scene_source(find_scene(arguments.names.front()), arguments.overrides);
+  if (!study.between.empty())
+    source = valid_source(source, {{study.find + "=" + study.between.substr(0, study.between.find(':'))}});
   const Scene scene = source.read();
   const Target target = target_of(study.target, scene);
   SolveOptions options = options_of(arguments, source, scene);

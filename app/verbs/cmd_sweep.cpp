@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 SweepPlan plan_of(const Arguments& arguments) {
   SweepPlan plan{scene_source(find_scene(arguments.names.front()), arguments.overrides), {}, {}, {}};
   for (const auto& text : arguments.study.vary) plan.axes.push_back(parse_axis(text));
+  stand_on_a_point(plan);
   plan.measures = find_measures(arguments.study.measure, columns_of(build_model(plan.source.read())));
   if (!arguments.study.shard.empty()) plan.shard = parse_shard(shard_of(arguments.study.shard));
   check_plan(plan);
@@ -128,11 +129,8 @@ void warn_of_idle_axes(const SweepPlan& plan, const Arguments& arguments) {
     std::string why;
     std::size_t wrong = 0;
     for (std::size_t point = 0; point < points && wrong < refused; point += stride) {
-      const auto values = plan.key(point);
-      std::vector<std::string> changes;
-      for (std::size_t a = 0; a < values.size(); ++a) changes.push_back(plan.axes[a].key + "=" + values[a]);
       try {
-        why = idle_key_text(plan.source.read(changes), key);
+        why = idle_key_text(plan.source.read(plan.changes(point)), key);
       } catch (const SceneError&) {
         ++wrong;
         continue;

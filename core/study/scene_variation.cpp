@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/scene/build.hpp"
 #include "core/scene/overrides.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/text_file.hpp"
@@ -34,6 +35,22 @@ SceneSource scene_source(const std::string& path, const std::vector<std::string>
   if (source.folder.empty()) source.folder = ".";
   source.files = std::make_shared<FilesBeside>();
   return source;
+}
+
+SceneSource valid_source(const SceneSource& source, const std::vector<std::vector<std::string>>& points) {
+  try {
+    build_model(source.read());
+    return source;
+  } catch (const SceneError&) {
+    for (const auto& changes : points) try {
+        build_model(source.read(changes));
+        SceneSource out = source;
+        out.overrides.insert(out.overrides.end(), changes.begin(), changes.end());
+        return out;
+      } catch (const SceneError&) {  // the next one, then
+      }
+    throw;
+  }
 }
 
 namespace {

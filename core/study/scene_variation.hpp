@@ -31,6 +31,10 @@ struct SceneSource {
 // are files that it names, which are read with its first point. Throws UnreadableScene.
 SceneSource scene_source(const std::string& path, const std::vector<std::string>& overrides);
 
+// The same where it makes a model as it stands; else behind the first of these changes with which it does,
+// as all of its points change those keys again. Throws what is wrong with it as it stands where none does.
+SceneSource valid_source(const SceneSource& source, const std::vector<std::vector<std::string>>& points);
+
 // What a scene says before its variables are worked out, without comments and layout, and the overrides: as
 // comments of TOML. Two scenes that agree in it agree whatever the values of their variables, which two that
 // agree once they are worked out need not.

@@ -42,10 +42,11 @@ struct SweepPlan {
   std::vector<RunMeasure> measures;
   Shard shard;
 
-  std::size_t points() const;                             // of the whole grid
-  std::vector<std::string> key(std::size_t point) const;  // its values; the last axis runs fastest
-  std::vector<std::string> columns() const;               // keys, outcome, measures
-  std::vector<std::size_t> number_columns() const;        // those of the measures
+  std::size_t points() const;                                 // of the whole grid
+  std::vector<std::string> key(std::size_t point) const;      // its values; the last axis runs fastest
+  std::vector<std::string> changes(std::size_t point) const;  // "key=value"
+  std::vector<std::string> columns() const;                   // keys, outcome, measures
+  std::vector<std::size_t> number_columns() const;            // those of the measures
   // A row that a run of this sweep can leave: an outcome that there is, measures that can be.
   bool is_finished(const std::vector<std::string>& row) const;
   // Is a row one of the whole grid's?
@@ -54,6 +55,8 @@ struct SweepPlan {
   SceneError of_axes(const SceneError& error) const;
 };
 
+// What is varied may be wrong as the scene has it: its source, then, has the values of a point that is right.
+void stand_on_a_point(SweepPlan& plan);
 // Throws StudyError (no axis, no measure, a key twice, too many points), SceneError where a value
 // is refused by the scene. Gives the axes their units, and forces a column that says whether they are unique.
 void check_plan(SweepPlan& plan);

@@ -186,6 +186,12 @@ std::vector<std::string> SweepPlan::key(std::size_t point) const {
   return values;
 }
 
+std::vector<std::string> SweepPlan::changes(std::size_t point) const {
+  std::vector<std::string> out = key(point);
+  for (std::size_t a = 0; a < axes.size(); ++a) out[a] = axes[a].key + "=" + out[a];
+  return out;
+}
+
 std::vector<std::string> SweepPlan::columns() const {
   std::vector<std::string> names;
   for (const SweepAxis& axis : axes) names.push_back(axis.key);
@@ -269,6 +275,14 @@ std::string unit_of_axis(const SweepPlan& plan, const SweepAxis& axis,
 }
 
 }  // namespace
+
+void stand_on_a_point(SweepPlan& plan) {
+  constexpr std::size_t looked_at = 200;
+  std::vector<std::vector<std::string>> some;
+  for (std::size_t point = 0; point < plan.points(); point += plan.points() / looked_at + 1)
+    some.push_back(plan.changes(point));
+  plan.source = valid_source(plan.source, some);
+}
 
 void check_plan(SweepPlan& plan) {
   if (plan.axes.empty()) throw StudyError("nothing to vary; give --vary KEY=FROM:TO:COUNT");

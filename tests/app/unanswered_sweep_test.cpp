@@ -90,6 +90,24 @@ TEST_CASE("what runs are warned of is told where many are made") {
   CHECK(solve.err.starts_with("unfurl: warning: " + said));
 }
 
+// The scene's own fold angle is 70 degrees, at which seven units do not fit.
+TEST_CASE("a study whose points are right needs no scene that is right without them") {
+  const ScratchDirectory dir;
+  const auto with = [](std::vector<std::string> words) {
+    words.insert(words.end(), {"--set", "structure.units=7"});
+    return run_program(words);
+  };
+  const ProgramResult sweep = with({"sweep", "hoberman", "-o", dir / "sweep", "--vary",
+                                    "structure.fold_angle=20,40", "--measure", "deploy_time"});
+  INFO(sweep.err);
+  CHECK(sweep.code == 0);
+  CHECK(sweep.err.find("warning") == std::string::npos);
+  const ProgramResult solve = with({"solve", "hoberman", "--find", "structure.fold_angle", "--target",
+                                    "deploy_time=0.4", "--between", "20:60"});
+  INFO(solve.err);
+  CHECK(solve.code == 0);
+}
+
 TEST_CASE("a failed run is no modelling choice to compare with") {
   const ScratchDirectory dir;
   const ProgramResult study =

@@ -48,6 +48,30 @@ TEST_CASE("axes are ranges, log ranges or lists") {
     CHECK_THROWS_AS(parse_axis(bad), StudyError);
 }
 
+// The inner nodes of seven units meet at 9/14 of 100 degrees; the scene's own fold angle is 70.
+TEST_CASE("a sweep stands on a point that is right where the scene as it stands is not") {
+  const auto plan_of = [](const std::vector<std::string>& axes) {
+    SweepPlan plan{{find_scene("hoberman"), {"structure.units=7"}}, {}, {}, {}};
+    for (const std::string& axis : axes) plan.axes.push_back(parse_axis(axis));
+    plan.measures.push_back(find_measure("deploy_time"));
+    return plan;
+  };
+  SweepPlan plan = plan_of({"structure.fold_angle=68,20,40", "solver.end_time=3,4"});
+  CHECK_THROWS_AS(build_model(plan.source.read()), SceneError);
+  stand_on_a_point(plan);
+  check_plan(plan);
+  CHECK(scene_number(plan.source.read(), "structure.fold_angle") == 20.0);
+  CHECK(plan.axes[0].unit == "deg");
+  CHECK(scene_number(plan.source.read(plan.changes(5)), "structure.fold_angle") == 40.0);
+  CHECK(scene_number(plan.source.read(plan.changes(5)), "solver.end_time") == 4.0);
+  // With no such point what is wrong is said of the scene; one that is right is left as it is.
+  SweepPlan none = plan_of({"structure.fold_angle=66:80:3"}), right = plan_of({"structure.units=4,5"});
+  CHECK_THROWS_WITH(stand_on_a_point(none), Catch::Contains("with 7 units the inner nodes meet"));
+  right.source.overrides.clear();
+  stand_on_a_point(right);
+  CHECK(right.source.overrides.empty());
+}
+
 TEST_CASE("what does nothing at every point of a sweep is told, what does something at one is not") {
   // No two rods meet at A; a weight is given back where there is one.
   const auto text = std::make_shared<const std::string>(R"(
