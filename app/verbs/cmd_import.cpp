@@ -45,7 +45,7 @@ int cmd_import(const Arguments& arguments) {
   if (!arguments.overrides.empty()) {
     WrittenBack written = write_back(scene.text, arguments.names.front(), arguments.overrides, "");
     scene.text = std::move(written.text);
-    if (written.anew) std::cerr << "unfurl: " << said_of_written_anew << "\n";
+    if (const std::string said = said_of(written); !said.empty()) std::cerr << "unfurl: " << said << "\n";
   }
   if (output.empty())
     std::cout << scene.text;

@@ -21,7 +21,7 @@ std::string changed_text(const std::string& path, const std::vector<std::string>
   if (overrides.empty()) return file.text;
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const WrittenBack written = write_back(file.text, path, overrides, folder.empty() ? "." : folder);
-  if (written.anew) std::cerr << "unfurl: " << said_of_written_anew << "\n";
+  if (const std::string said = said_of(written); !said.empty()) std::cerr << "unfurl: " << said << "\n";
   return written.text;
 }
 
