@@ -15,6 +15,7 @@
 #include "core/scene/scene_error.hpp"
 #include "core/scene/title.hpp"
 #include "core/scene/write.hpp"
+#include "core/scene/write_back.hpp"
 #include "render/image/png.hpp"
 
 namespace unfurl {
@@ -340,17 +341,30 @@ void LiveSession::save(const std::string& typed) {
                      {{"Replace", [path](LiveSession& s) { s.save_now(path); }}, {"Cancel", {}}}};
 }
 
-void LiveSession::save_now(const std::string& path) {
-  bool anew = false;
-  const SceneDocument saved = saved_document(state_.history.now(), path, anew);
+void LiveSession::save_now(const std::string& path, bool losing) {
+  WrittenBack written;
+  const SceneDocument saved = saved_document(state_.history.now(), path, written);
   if (const std::string why = other_there(saved, state_.history.now()); !why.empty()) {
     state_.message = "not saved: " + why + "; the scene names that file: copy it there first";
+    return;
+  }
+  const std::string without = written.lost.empty() ? "" : "without its " + written.lost;
+  if (!losing && !without.empty() && path == state_.history.now().path) {
+    state_.question = {
+        (written.anew ? "" : "A list of ") + absolute(path) + " would be written anew, " + without + ".",
+        {{"Save anew", [path](LiveSession& s) { s.save_now(path, true); }},
+         {"Save as\u2026", [](LiveSession& s) { s.save_as(); }},
+         {"Cancel", {}}}};
     return;
   }
   if (!options_.replayed) write_file_atomically(behind_links(path), *saved.text);
   state_.history.saved(saved);
   saved_ = saved;
-  state_.message = "saved " + absolute(path) + (anew ? ", written anew" : ", comments kept");
+  const bool kept = !written.anew && without.empty();
+  // What matters comes first: a narrow window has room for that.
+  state_.message = kept ? "saved " + absolute(path) + ", comments kept"
+                        : std::string(written.anew ? "" : "a list ") + "written anew" +
+                              (without.empty() ? "" : ", ") + without + ": " + absolute(path);
   state_.export_path = path;
   remember(path);
 }
@@ -358,6 +372,10 @@ void LiveSession::save_now(const std::string& path) {
 void LiveSession::save_or_ask() {
   const std::string& path = state_.history.now().path;
   if (!path.empty() && !of_library(path)) return save(path);
+  save_as();
+}
+
+void LiveSession::save_as() {
   state_.export_open = true;
   state_.message = "a name for the scene's own file, then Save as";
 }

@@ -65,7 +65,9 @@ class LiveSession {
   void start_export(bool replace = false, bool as_shown = false);
   void open_folder();                  // of the last export, in the desktop's own way
   void save(const std::string& path);  // asks likewise, and where others changed the scene's own file
-  void save_now(const std::string& path);
+  // Asks where that file would lose comments and the like; `losing`: it may.
+  void save_now(const std::string& path, bool losing = false);
+  void save_as();
   void save_or_ask();  // into its own file, or where to
   void add_entry(const ElementOffer& offer);
   void open(const SceneDocument& document);

@@ -14,7 +14,6 @@
 #include "app/panel/document/own_file.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/text_file.hpp"
-#include "core/scene/write_back.hpp"
 #include "render/image/child_process.hpp"
 
 namespace unfurl {
@@ -109,19 +108,18 @@ std::string export_command(const SceneDocument& document, const ExportKind& kind
   return line.replace(line.find(plain), plain.size(), behind);
 }
 
-SceneDocument saved_document(const SceneDocument& document, const std::string& path, bool& anew) {
-  WrittenBack written = write_back(*document.text, document.name, overrides_of(document), document.folder);
-  anew = written.anew;
+SceneDocument saved_document(const SceneDocument& document, const std::string& path, WrittenBack& written) {
+  written = write_back(*document.text, document.name, overrides_of(document), document.folder);
   SceneDocument saved;
   saved.path = saved.name = path;
-  saved.text = std::make_shared<const std::string>(std::move(written.text));
+  saved.text = std::make_shared<const std::string>(written.text);
   saved.folder = fs::path(path).parent_path().string();
   if (saved.folder.empty()) saved.folder = ".";
   return saved;
 }
 
-SceneDocument save_document(const SceneDocument& document, const std::string& path, bool& anew) {
-  SceneDocument saved = saved_document(document, path, anew);
+SceneDocument save_document(const SceneDocument& document, const std::string& path, WrittenBack& written) {
+  SceneDocument saved = saved_document(document, path, written);
   write_file_atomically(path, *saved.text);
   return saved;
 }

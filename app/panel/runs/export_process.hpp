@@ -9,6 +9,7 @@
 
 #include "app/panel/document/scene_document.hpp"
 #include "app/panel/runs/worker.hpp"
+#include "core/scene/write_back.hpp"
 
 namespace unfurl {
 
@@ -31,10 +32,10 @@ std::string export_command(const SceneDocument& document, const ExportKind& kind
                            bool in_file);
 
 // The document with its changes in the text, comments kept, as a file of that path would hold it. Throws
-// SceneError. `anew`: the text had to be written anew.
-SceneDocument saved_document(const SceneDocument& document, const std::string& path, bool& anew);
+// SceneError. `written`: that text, and what it has lost.
+SceneDocument saved_document(const SceneDocument& document, const std::string& path, WrittenBack& written);
 // Writes that file. Throws FileError.
-SceneDocument save_document(const SceneDocument& document, const std::string& path, bool& anew);
+SceneDocument save_document(const SceneDocument& document, const std::string& path, WrittenBack& written);
 
 struct ExportRequest {
   std::string program;             // of unfurl

@@ -10,6 +10,7 @@
 #include "core/scene/reader.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
+#include "core/scene/write_back.hpp"
 #include "tests/app/panel/panel_driver.hpp"
 #include "tests/app/run_program.hpp"
 
@@ -102,9 +103,9 @@ TEST_CASE("a drive is added in the left pane, acts, is written into the file and
   REQUIRE(meant.constraints.size() == 1);
 
   const ScratchDirectory scratch;
-  bool anew = true;
-  const SceneDocument saved = save_document(edited, scratch / "ring.toml", anew);
-  CHECK_FALSE(anew);  // comments stay
+  WrittenBack written;
+  const SceneDocument saved = save_document(edited, scratch / "ring.toml", written);
+  CHECK_FALSE(written.anew);  // comments stay
   CHECK_FALSE(is_edited(saved));
   Scene read = read_document(saved);
   read.name = meant.name;

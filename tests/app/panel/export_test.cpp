@@ -7,6 +7,7 @@
 #include "app/panel/runs/study_job.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/write.hpp"
+#include "core/scene/write_back.hpp"
 #include "tests/app/panel/panel_driver.hpp"
 #include "tests/app/run_program.hpp"
 
@@ -17,9 +18,9 @@ TEST_CASE("a saved document is the scene as edited, with its comments") {
   SceneDocument document = open_document("hoop6", {"solver.stages=4"});
   document.edits["solver.step"] = 0.025;
   const std::string path = scratch / "mine.toml";
-  bool anew = true;
-  const SceneDocument saved = save_document(document, path, anew);
-  CHECK_FALSE(anew);
+  WrittenBack written;
+  const SceneDocument saved = save_document(document, path, written);
+  CHECK_FALSE(written.anew);
   CHECK(saved.edits.empty());
   CHECK(saved.path == path);
   CHECK(scene_text(read_scene_file(path)) == scene_text(read_document(document)));

@@ -160,6 +160,41 @@ TEST_CASE("a file and a folder that are there are replaced only after a question
   CHECK_FALSE(driver.state().exporting.running);
 }
 
+TEST_CASE("a file loses comments and repeats only after a question and what was lost is said first") {
+  const ScratchDirectory scratch;
+  const std::string text =
+      "# mine\n[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'A'\nposition = [0, 0, 0]\n"
+      "fixed = true\n[[structure.nodes]]\nrepeat = {i = '1:3'}\nname = 'B{i}'\nposition = ['=i', 0, 0]\n"
+      "[[structure.rods]]\nnodes = ['A', 'B1']\nmass = 1\n[[structure.rods]]\nnodes = ['B1', 'B2']\nmass = "
+      "1\n";
+  const std::string file = scratch.write("own.toml", text);
+  PanelDriver driver(tall(), open_document(file, {"structure.nodes[2].mass=2"}));
+  driver.key(Key::s, true);
+  driver.frame();
+  CHECK(file_text(file) == text);
+  CHECK(driver.state().question.text.ends_with("written anew, without its comments, expressions, repeats."));
+  REQUIRE(driver.panel().has_place("answer Cancel"));
+  driver.click("answer Cancel");
+  driver.frame();
+  CHECK(file_text(file) == text);
+  driver.key(Key::s, true);
+  driver.frame();
+  driver.click("answer Save as\u2026");
+  driver.frame();
+  CHECK(driver.state().export_open);
+  CHECK(file_text(file) == text);
+  driver.key(Key::escape);
+  driver.key(Key::s, true);
+  driver.frame();
+  driver.click("answer Save anew");
+  driver.frame();
+  CHECK(file_text(file).find("repeat") == std::string::npos);
+  CHECK(driver.state().message.starts_with("written anew, without its comments, expressions, repeats: "));
+  driver.key(Key::s, true);  // it has none any more
+  driver.frame();
+  CHECK(driver.state().question.text.empty());
+}
+
 TEST_CASE("what another program changed in the scene's file is replaced only after a question") {
   const ScratchDirectory scratch;
   const std::string text = pendulum, file = scratch.write("own.toml", text);

@@ -5,6 +5,7 @@
 
 #include "app/panel/document/build_edits.hpp"
 #include "core/scene/build.hpp"
+#include "core/scene/write_back.hpp"
 #include "render/scene/view.hpp"
 #include "tests/app/panel/panel_driver.hpp"
 
@@ -277,9 +278,9 @@ TEST_CASE("building has a mirror, a saved scene has what was built, and a family
   driver.state().intents.emplace_back([](LiveSession& s) { s.connect("A", "N1"); });
   driver.settle();
   CHECK(driver.state().shown->scene.custom.rods.size() == 3);  // and its image, A-N2
-  bool anew = true;
-  const SceneDocument saved = saved_document(driver.state().history.now(), "built.toml", anew);
-  CHECK_FALSE(anew);
+  WrittenBack written;
+  const SceneDocument saved = saved_document(driver.state().history.now(), "built.toml", written);
+  CHECK_FALSE(written.anew);
   CHECK(saved.text->find("[[structure.rods]]\nnodes = [\"A\", \"N2\"]") != std::string::npos);
   CHECK(read_document(saved).custom.nodes.size() == 4);
 
