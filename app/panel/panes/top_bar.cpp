@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The bar along the top, and the list of keys.
-#include <cstdio>
+#include <cstddef>
+#include <string>
+#include <vector>
 
 #include "app/panel/actions.hpp"
 #include "app/panel/panes/panes.hpp"
@@ -29,6 +31,33 @@ void left_buttons(Ui& ui, PanelState& state) {
     state.pinned = pinned ? nullptr : state.shown;
 }
 
+// In a line or, where that is too short, in two.
+void draw_message(Ui& ui, const std::string& text, float room) {
+  ImGui::BeginGroup();
+  if (ImGui::CalcTextSize(text.c_str()).x <= room) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextColored(ui.theme.dim, "%s", text.c_str());
+  } else {
+    const float row = ImGui::GetFrameHeight();
+    std::size_t end = 0;  // of the words that the first line holds
+    for (std::size_t at = text.find(' '); at != text.npos; at = text.find(' ', at + 1)) {
+      if (ImGui::CalcTextSize(text.substr(0, at).c_str()).x > room) break;
+      end = at;
+    }
+    const float left = ImGui::GetCursorPosX();
+    const float high = ImGui::GetTextLineHeight();
+    float top = ImGui::GetCursorPosY() + row / 2 - high;
+    for (const std::string& line : {text.substr(0, end), text.substr(end == 0 ? 0 : end + 1)}) {
+      ImGui::SetCursorPos({left, top});
+      ImGui::TextColored(ui.theme.dim, "%s", shortened(line, room).c_str());
+      top += high;
+    }
+  }
+  ImGui::EndGroup();
+  ui.note("message");
+  tooltip(ui, text);
+}
+
 }  // namespace
 
 void draw_top_bar(Ui& ui, PanelState& state) {
@@ -41,12 +70,8 @@ void draw_top_bar(Ui& ui, PanelState& state) {
   for (const char* word : {find, state.dark ? "Light" : "Dark", "Keys"})
     words += ImGui::CalcTextSize(word).x + 2 * style.FramePadding.x + ui.px(4);
   const float right = ImGui::GetWindowWidth() - style.WindowPadding.x - words + ui.px(4);
-  ImGui::AlignTextToFramePadding();
   const float room = right - ImGui::GetCursorPosX() - ui.px(8);
-  if (!state.message.empty() && room > ui.px(40)) {
-    ImGui::TextColored(ui.theme.dim, "%s", shortened(state.message, room).c_str());
-    tooltip(ui, state.message);
-  }
+  if (!state.message.empty() && room > ui.px(40)) draw_message(ui, state.message, room);
   ImGui::SameLine(right);
   if (button(ui, "palette", find, "any action or parameter by its name (Ctrl P)")) state.palette_open = true;
   ImGui::SameLine(0, ui.px(4));

@@ -415,6 +415,30 @@ TEST_CASE("the panel fits pictures from small to large") {
   }
 }
 
+TEST_CASE("a message that is too long for its line takes two and stays in the bar") {
+  const auto [width, scale] = GENERATE(table<int, float>({{640, 1.f}, {800, 1.f}, {1000, 1.f}, {1600, 2.f}}));
+  PanelOptions options = PanelDriver::small();
+  options.width = width;
+  options.scale = scale;
+  PanelDriver driver(options);
+  const auto place = [&](const std::string& message) {
+    driver.state().message = message;
+    driver.frame();
+    driver.frame();
+    return driver.panel().place("message");
+  };
+  const plot::Rect one = place("saved"),
+                   two = place("written anew, without its comments, variables: " + std::string(200, 'p') +
+                               ".toml");
+  CHECK(two.height() > one.height());
+  for (const plot::Rect& r : {one, two}) {
+    CHECK(r.x0 > driver.panel().place("pin").x1);
+    CHECK(r.x1 < driver.panel().place("palette").x0);
+    CHECK(r.y0 >= 0);
+    CHECK(r.y1 <= driver.panel().place("view").y0);
+  }
+}
+
 TEST_CASE("a long title ends within the view") {
   SceneDocument document = open_document("hoop6", {});
   const std::string title(GENERATE(30u, 60u, 200u), 'n');
