@@ -21,6 +21,8 @@ constexpr double rounding = 1e-13;
 // A measure that changes by less, of what is left of it, over a piece of the path is stationary.
 constexpr double stationary = 1e-9;
 constexpr double same_end = 1e-8;  // of the way: the motion gets there
+// Of the way: what acts is not told from its rounding as near to a pose in which nothing has a lever.
+constexpr double dead = 1e-5;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::string in_degrees(double angle) {
@@ -157,15 +159,42 @@ class MarginMaker {
     return out;
   }
 
-  double static_margin(double s, double t, bool slips = false) const {
+  struct Balance {
     double drives = 0, resistances = 0;
+    double sum() const { return drives + resistances; }
+    double margin() const {
+      if (resistances <= rounding * drives) return drives > 0 ? infinite : 0.0;
+      return drives / resistances - 1;
+    }
+  };
+
+  Balance balance(double s, double t, bool slips = false) const {
+    Balance out;
     for (std::size_t k = 0; k < out_.sources.size(); ++k) {
       const ScalarLaw::Value at = force(k, s, t, slips);
       if (std::abs(at.Q) <= rounding * at.scale) continue;
-      (at.Q > 0 ? drives : resistances) += std::abs(at.Q);
+      (at.Q > 0 ? out.drives : out.resistances) += std::abs(at.Q);
     }
-    if (resistances <= rounding * drives) return drives > 0 ? infinite : 0.0;
-    return drives / resistances - 1;
+    return out;
+  }
+
+  // At a dead centre, where all that acts fades away, the least of the limits from its sides. One that the
+  // structure rests in at the start has nothing that drives it on.
+  double static_margin(double s, double t, bool slips = false) const {
+    const Balance here = balance(s, t, slips);
+    if (s == 0 && here.sum() == 0) return 0.0;
+    double limit = infinite;
+    bool fades = false;
+    for (const double side : {-dead * *end_, dead * *end_}) {
+      // Of a dead centre between here and `side` the forces at three times that are on one side.
+      if (s + 6 * side < 0 || s + 6 * side > *end_) continue;
+      const Balance near = balance(s + 3 * side, t, slips), far = balance(s + 6 * side, t, slips);
+      if (here.sum() >= 0.2 * near.sum() || near.sum() >= 0.8 * far.sum()) continue;
+      fades = true;
+      const double a = near.margin(), b = far.margin();
+      limit = std::min(limit, std::isfinite(a) && std::isfinite(b) ? std::max(2 * a - b, -1.0) : a);
+    }
+    return fades ? limit : here.margin();
   }
 
   MarginPoint point(double s) const {

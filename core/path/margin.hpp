@@ -9,7 +9,8 @@
 //
 // The second has inertia and rates in it: the kinetic energy is K = K_0 + work of drives - work of
 // resistances, so that the margin is K over what has been resisted, and 0 where the motion stalls. At the
-// start it is the static one. Where nothing resists a margin is infinite.
+// start it is the static one. Where nothing resists a margin is infinite; at a dead centre, where all Q_k are
+// zero at once, the static one is the less of the limits from either side.
 #pragma once
 
 #include <limits>
