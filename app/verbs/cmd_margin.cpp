@@ -13,6 +13,7 @@
 #include "core/path/margin.hpp"
 #include "core/path/path.hpp"
 #include "core/path/sector.hpp"
+#include "core/simulate/simulation.hpp"
 #include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
 #include "render/plot/figures/margin_figure.hpp"
@@ -268,6 +269,10 @@ int cmd_margin(const Arguments& arguments) {
   warn_of_idle_sets(arguments, {"solver.model", "solver.tolerance"}, "margins are those of the path");
   const InterruptGuard guard;
   const auto model = model_of(scene, arguments);
+  SolverOptions own_steps = scene.solver;
+  own_steps.step = 0;  // a margin's are as long as its path allows: nothing to warn of
+  for (const std::string& warning : start_warnings(*model, own_steps))
+    std::cerr << "unfurl: warning: " << warning << "\n";
   const Margin margin = margin_as_far_as_followed(model, scene, factors, !arguments.study.stuck);
   constexpr std::size_t few = 12;  // hinges whose pairs are told too
   std::vector<StuckHinge> hinges;

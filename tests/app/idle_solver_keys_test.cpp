@@ -50,4 +50,23 @@ TEST_CASE("what a scene says of its solver and a verb does not do is told") {
   CHECK(told(std::vector<std::string>{"modes", "four_bar", "--at", "0.1"} + settings).empty());
 }
 
+TEST_CASE("a margin is warned of at the start as a run is, but for its steps") {
+  const auto warned = [](const char* verb, const std::vector<std::string>& more) {
+    const ScratchDirectory dir;
+    std::vector<std::string> words{verb, "scissor_mast", "--quiet", "-o", dir / "out"};
+    words.insert(words.end(), {"--set", "structure.cells=2", "--set", "solver.end_time=0.05"});
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult r = run_program(words);
+    INFO(r.err);
+    CHECK(r.code == 0);
+    return r.err;
+  };
+  for (const std::vector<std::string>& more : {
+           std::vector<std::string>{},
+           {"--set", "structure.length_error=1e-3"},
+           {"--set", R"(forces[0]={kind="latch",stiffness=10})", "--set", "structure.error_seed=3"},
+       })
+    CHECK(warned("margin", more) == warned("run", more));
+}
+
 }  // namespace idle_solver_keys_test
