@@ -2,8 +2,10 @@
 #include "core/simulate/turning_back.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/simulate/run_words.hpp"
 #include "core/structure/measure.hpp"
@@ -11,8 +13,9 @@
 namespace unfurl {
 namespace {
 
-constexpr double at_it = 1e-9;   // of the lengths that make it up: nearer, its side is rounding
-constexpr double near_it = 0.1;  // of both states' own: what passes further away has turned round otherwise
+constexpr double at_it = 1e-9;    // of the lengths that make it up: nearer, its side is rounding
+constexpr double on_axis = 1e-4;  // of a side's length: as good as along its axis
+constexpr double near_it = 0.1;   // of both states' own: what passes further away has turned round otherwise
 
 constexpr double never = std::numeric_limits<double>::quiet_NaN();
 
@@ -153,6 +156,50 @@ std::vector<std::string> TurningBack::between(const System& system, const State&
   return told;
 }
 
+namespace {
+
+// What of an angle about an axis or an edge can come to lie along that, where there is no such angle.
+struct AxisSide {
+  int from, to;  // nodes
+  Vec3 across;   // its part across the axis
+  double length;
+};
+std::vector<AxisSide> axis_sides(const Measure& m, const VectorXd& q) {
+  const bool edge = m.kind == MeasureKind::dihedral;
+  if (m.nodes.size() != 4 || !(edge || (m.kind == MeasureKind::angle && counts_turns(m)))) return {};
+  const auto between = [&](int a, int b) -> Vec3 { return q.segment<3>(3 * b) - q.segment<3>(3 * a); };
+  const Vec3 axis = (edge ? between(m.nodes[1], m.nodes[2]) : m.axis).normalized();
+  std::vector<AxisSide> out;
+  for (const auto& [from, to] :
+       {std::pair{m.nodes[edge ? 1 : 0], m.nodes[edge ? 0 : 1]}, std::pair{m.nodes[2], m.nodes[3]}}) {
+    const Vec3 side = between(from, to);
+    out.push_back({from, to, side - side.dot(axis) * axis, side.norm()});
+  }
+  return out;
+}
+
+// That a way from q to `later` leads a side onto its axis, or past it at a tenth of its distance before.
+std::string onto_its_axis(const Structure& structure, const std::string& name, const Measure& measure,
+                          const VectorXd& q, const VectorXd& later) {
+  const std::vector<AxisSide> now = axis_sides(measure, q), then = axis_sides(measure, later);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const Vec3 here = now[i].across, way = then[i].across - here;
+    const double part = std::clamp(-here.dot(way) / way.squaredNorm(), 0.0, 1.0);
+    if (here.norm() > on_axis * now[i].length && !((here + part * way).norm() <= near_it * here.norm()))
+      continue;
+    const auto node = [&](int n) { return structure.nodes[static_cast<std::size_t>(n)].name; };
+    const bool edge = measure.kind == MeasureKind::dihedral;
+    return (edge ? node(now[i].to) + " comes onto the edge of " + name + ", "
+                 : node(now[i].from) + "-" + node(now[i].to) + " comes to lie along the axis of " + name +
+                       ", ") +
+           "about which it has no angle there to be held: end the motion before that (a stop), or hold it " +
+           (edge ? "by other nodes" : "about another axis");
+  }
+  return "";
+}
+
+}  // namespace
+
 std::string at_its_end(const Structure& structure, const System& system, const State& state, double h) {
   VectorXd q(system.coordinates()), v(q.size());
   system.expand(state.z, q);
@@ -165,11 +212,16 @@ std::string at_its_end(const Structure& structure, const System& system, const S
                  there = value + 2 * h * function.rate(gradient.data(), v.data());
     return !(there > 0) || (measure.kind == MeasureKind::angle && !(there < pi));
   };
+  const VectorXd later = q + 2 * h * v;
+  const auto ended = [&](const Constraint& c, const Measure& measure) {
+    return ends(measure) ? held_through(c.name, is_angle(measure))
+                         : onto_its_axis(structure, c.name, measure, q, later);
+  };
   for (const Constraint& c : structure.constraints) {
     if (c.kind != "measure") continue;
-    if (ends(c.measure)) return held_through(c.name, is_angle(c.measure));
+    if (std::string words = ended(c, c.measure); !words.empty()) return words;
     for (const MeasureTerm& term : c.measure.terms)
-      if (ends(term.measure)) return held_through(c.name, is_angle(term.measure));
+      if (std::string words = ended(c, term.measure); !words.empty()) return words;
   }
   return "";
 }

@@ -39,7 +39,8 @@ class TurningBack {
   std::vector<bool> said_;  // of the structure's forces, constraints and stops
 };
 
-// That a step of h may lead a measure that a constraint holds to where it turns back, in words; empty: none.
+// That a step of h may lead a measure that a constraint holds to where it turns back, or a side of an angle
+// onto its axis, in words; empty: none.
 std::string at_its_end(const Structure& structure, const System& system, const State& state, double h);
 
 }  // namespace unfurl

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/simulate/turning_back.hpp"
 #include "tests/support/scene_run.hpp"
@@ -320,6 +323,39 @@ TEST_CASE("a stop beyond whose limit an angle turns back within a step is told o
   CHECK(said(0.1, none, 1) == 1);
   CHECK(said(0.1, none, -1) == 0);
   for (const double side : {1.0, -1.0}) CHECK(said(0.1, 3.1, side) == 1);
+}
+
+// N flies straight at the axis of what holds its angle, and reaches it after 1 s, whatever the step.
+TEST_CASE("a side that comes onto the axis of its angle ends the run and is named") {
+  const std::string text = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "T", position = [0, 0, 1], fixed = true},
+         {name = "Q", position = [2, 0, 0.5], fixed = true},
+         {name = "N", position = [1, 0, 0.3], mass = 1, velocity = [-1, 0, 0]},
+         {name = "G", position = [1, 1, 0.3], mass = 1}]
+[solver]
+step = 0.03
+end_time = 2
+)";
+  const std::string axis = " comes to lie along the axis of k, about which it has no angle there to be held";
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {R"(kind="angle",nodes=["N","O","Q"],axis=[0,0,1])", "O-N" + axis},
+      {R"(kind="rack",nodes=["Q","O","N","G"],radius=0.2,axis=[0,0,1],direction=[0,1,0])", "O-N" + axis},
+      {R"(kind="gear",nodes=["N","O","Q","G","O","Q"],axis=[0,0,1],radii=[0.1,0.2])", "O-N" + axis},
+      {R"(kind="combination",terms=["1 dihedral N O T Q","0.2 coordinate G along 0 1 0"])",
+       "N comes onto the edge of k, about which it has no angle"},
+  };
+  for (const auto& [constraint, words] : cases)
+    for (const std::string step : {"solver.step=0.03", "solver.step=0.0007", "solver.adaptive=true"}) {
+      const std::string there = "structure.constraints[0]={name=\"k\"," + constraint + "}";
+      const Simulation run = run_scene(text, {there, step});
+      INFO(constraint << ", " << step << ": " << run.message);
+      CHECK(run.status == RunStatus::failed);
+      CHECK(run.message.find(words) != std::string::npos);
+      CHECK(run.message.find("smaller solver.step") == std::string::npos);
+      CHECK(run_scene(text, {there, step, "solver.end_time=0.9"}).status == RunStatus::completed);
+    }
 }
 
 }  // namespace turning_back_test
