@@ -24,6 +24,11 @@ bool turns_back(const Measure& m) {
   return m.kind == MeasureKind::length || (m.kind == MeasureKind::angle && !counts_turns(m));
 }
 
+// Whether it pulls on both sides of where its measure turns back.
+bool acts_through(const Force& f) {
+  return f.kind == "motor" || (!f.one_sided && f.stiffness > 0);
+}
+
 // Zero where the measure turns back, pointing the other way behind: the distance itself, or the normal of an
 // angle's lines. `size`: what it is to be compared with.
 Vec3 side_of(const Measure& measure, const VectorXd& q, double& size) {
@@ -106,9 +111,7 @@ void TurningBack::add(Of of, std::size_t index, const std::string& name, const M
 TurningBack::TurningBack(const Structure& structure) {
   std::size_t index = 0;
   for (const Force& f : structure.forces) {
-    const bool motor = f.kind == "motor";
-    if (motor || (!f.one_sided && f.stiffness > 0))
-      add(Of::force, index, f.name, f.measure, motor ? never : f.rest);
+    if (acts_through(f)) add(Of::force, index, f.name, f.measure, f.kind == "motor" ? never : f.rest);
     ++index;
   }
   for (const Constraint& c : structure.constraints) {
@@ -210,7 +213,7 @@ std::string at_its_end(const Structure& structure, const System& system, const S
     std::vector<double> gradient(function.stencil().size());
     const double value = function.value_and_gradient(q.data(), gradient.data()),
                  there = value + 2 * h * function.rate(gradient.data(), v.data());
-    return !(there > 0) || (measure.kind == MeasureKind::angle && !(there < pi));
+    return !(there > at_it) || (measure.kind == MeasureKind::angle && !(there < pi - at_it));
   };
   const VectorXd later = q + 2 * h * v;
   const auto ended = [&](const Constraint& c, const Measure& measure) {
@@ -223,6 +226,12 @@ std::string at_its_end(const Structure& structure, const System& system, const S
     for (const MeasureTerm& term : c.measure.terms)
       if (std::string words = ended(c, term.measure); !words.empty()) return words;
   }
+  for (const Force& f : structure.forces)
+    if (f.measure.kind == MeasureKind::angle && acts_through(f) && ends(f.measure))
+      return "the rods of " + f.name +
+             " come to lie in line, where an angle without an axis turns back and the torque on it jumps: "
+             "give "
+             "it an axis, or make solver.step smaller";
   return "";
 }
 

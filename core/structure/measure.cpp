@@ -64,9 +64,10 @@ Matrix atan2_hessian(double s, double c, const Vector& ds, const Vector& dc, con
                            r4;
 }
 
-// Of the sides of an angle, by |d_1 x d_2| and d_1 . d_2, but for rounding: they have no axis.
+// Of the sides of an angle, by |d_1 x d_2| and d_1 . d_2, but for rounding and what the place of an impact is
+// known to: they have no axis.
 bool in_line(double s, double c) {
-  return s <= 1e-14 * std::abs(c);
+  return s <= 1e-12 * std::abs(c);
 }
 
 double on_branch(double angle, double near) {

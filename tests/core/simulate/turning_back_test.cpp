@@ -358,4 +358,37 @@ end_time = 2
     }
 }
 
+// What presses a hinge without an axis onto a stop in its straight pose holds it there, whatever the step.
+TEST_CASE("a hinge without an axis rests on a stop in its straight pose") {
+  const std::string text = R"toml(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1, 0, 0], fixed = true},
+         {name = "B", position = ["=1+cos(0.5)", "=sin(0.5)", 0], velocity = ["=sin(0.5)", "=-cos(0.5)", 0], mass = 1}]
+rods = [{nodes = ["O", "A"], mass = 0}, {nodes = ["A", "B"], mass = 0}]
+constraints = [{kind = "plane", nodes = ["B"], normal = [0, 0, 1]},
+               {kind = "coordinate_stop", name = "st", nodes = ["B"], direction = [0, 1, 0], min = 0}]
+[solver]
+stages = 4
+end_time = 5
+)toml";
+  const std::string motor =
+      R"(forces[0]={kind="motor",nodes=["O","A","B"],stall_torque=0.5,no_load_speed=300,inertia=0,control="voltage",voltage=1})";
+  const std::string spring =
+      R"(forces[0]={kind="torsion_spring",nodes=["O","A","B"],stiffness=2,free_angle=200})";
+  for (const std::string& force : {motor, spring})
+    for (const char* restitution : {"0", "0.3", "0.5"})
+      for (const char* step : {"0.013", "0.01", "0.007", "0.005", "0.003"}) {
+        const Simulation run =
+            run_scene(text, {force, std::string("structure.constraints[1].restitution=") + restitution,
+                             std::string("solver.step=") + step});
+        INFO(force << ", " << restitution << ", " << step << ": " << run.message);
+        CHECK(run.status == RunStatus::completed);
+        const std::size_t last = run.trajectory.size() - 1;
+        // What rests on a stop after bounces does within a flight at the rest speed, 1e-3 m/s, of a step.
+        CHECK(std::abs(run.trajectory.node_positions(last)[7]) <= 1e-5);
+        CHECK(std::abs(run.trajectory.velocities(last)[7]) <= 2e-3);
+      }
+}
+
 }  // namespace turning_back_test
