@@ -137,8 +137,10 @@ void ControlPanel::take_events() {
     keep_drawing(true);
     if (event.kind == Kind::text && event.text == "?" && !host_->typing())
       state().intents.emplace_back([](LiveSession& s) { s.state().help_open = !s.state().help_open; });
-    if (event.kind == Kind::drop)
+    if (event.kind == Kind::drop) {
+      host_->leave_field();  // it would write its text into the other scene
       state().intents.emplace_back([path = event.text](LiveSession& s) { s.open_file(path); });
+    }
     if (event.kind == Kind::close) state().intents.emplace_back(&LiveSession::ask_to_close);
     if (event.kind == Kind::button || event.kind == Kind::key) break;
   }

@@ -171,6 +171,17 @@ void ImguiHost::judge_clicks(double seconds) {
   since_ = -1;
 }
 
+// ImGui keeps the steps back of the field that was typed into last, for when that is entered again. By then
+// its text may be another (undone, of another scene, emptied), and they would be taken out of its bounds.
+void ImguiHost::forget_left_field() const {
+  ImGuiInputTextState& typed = context_->InputTextState;
+  if (typed.ID != context_->ActiveId) typed.ID = 0;
+}
+
+void ImguiHost::leave_field() const {
+  if (typing()) ImGui::ClearActiveID();
+}
+
 void ImguiHost::frame(int width, int height, double seconds, const std::function<void()>& draw) {
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
@@ -179,6 +190,7 @@ void ImguiHost::frame(int width, int height, double seconds, const std::function
   // Enter does what Space does; by itself it only begins to type.
   if (io.KeysDown[static_cast<int>(Key::enter)]) io.NavInputs[ImGuiNavInput_Activate] = 1;
   ImGui::NewFrame();
+  forget_left_field();
   std::exception_ptr thrown;
   try {
     ui_.typed.drawn = false;

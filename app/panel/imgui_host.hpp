@@ -31,6 +31,7 @@ class ImguiHost {
   void make_current() const { ImGui::SetCurrentContext(context_.get()); }
   void apply(const InputEvent& event);
   bool typing() const { return ImGui::GetIO().WantTextInput; }
+  void leave_field() const;  // where text is typed; what was typed stays
   // The widget that has the keyboard, where one has, uses this key.
   bool widget_takes(Key key) const;
   // Gives the keyboard to the widgets of a pane: the left one, or (`next`) the one behind that which has it.
@@ -47,6 +48,7 @@ class ImguiHost {
  private:
   void make_fonts();
   void judge_clicks(double seconds);
+  void forget_left_field() const;
 
   struct End {
     void operator()(ImGuiContext* context) const { ImGui::DestroyContext(context); }

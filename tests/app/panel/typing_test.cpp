@@ -31,6 +31,13 @@ void type_letters(PanelDriver& driver, const std::string& text) {
   }
 }
 
+// Empties the field that is typed into, by a step that Ctrl Z in it would take back, and types this instead.
+void retype(PanelDriver& driver, const std::string& text) {
+  driver.key(Key::a, true);
+  driver.key(Key::del);
+  type_letters(driver, text);
+}
+
 // A load of these values at times of as many.
 std::string loaded(const std::string& times, const std::string& values) {
   return "[structure]\nkind = 'pendulum'\n[[forces]]\nkind = 'load_over_time'\nnodes = ['bob']\n"
@@ -158,6 +165,81 @@ TEST_CASE("a long list is edited whole") {
   CHECK(now[0] == 0.125);
   CHECK(now[count - 1] == count - 1 + 0.1255);
   CHECK(now[count] == 7);
+}
+
+// A field that is entered again with another text: steps back that were kept of the one before put that in
+// again, or go out of the text's bounds.
+TEST_CASE("Ctrl Z in a field that was left and changed does nothing") {
+  SceneDocument document = open_document("pendulum", {});
+  document.overrides = {"gravity.acceleration=[0.5, 0.25, -9.81]", "solver.end_time=0.1"};
+  PanelDriver driver(quick(), document);
+  const EditHistory& history = driver.state().history;
+  for (const auto& [key, text] :
+       {std::pair{"title", "another and much longer title"}, std::pair{"structure.length", "1.23456789"},
+        std::pair{"gravity.acceleration", "2"}}) {
+    INFO(key);
+    begin(driver, key);
+    retype(driver, text);
+    driver.key(Key::enter);
+    driver.settle();
+    CHECK(history.now().edits.contains(key));
+    while (driver.state().history.undo()) {
+    }
+    driver.settle();
+    begin(driver, key);
+    for (const Key step : {Key::z, Key::z, Key::y}) driver.key(step, true);
+    CHECK(history.now() == document);
+    driver.key(Key::enter);
+    CHECK(history.now() == document);
+  }
+}
+
+TEST_CASE("Ctrl Z in a box that is opened again knows nothing of what was typed before") {
+  PanelDriver driver(quick(), "pendulum");
+  for (const auto& [key, text] :
+       {std::pair{Key::p, &driver.state().palette_query}, std::pair{Key::o, &driver.state().file_path}}) {
+    driver.key(key, true);
+    for (int i = 0; i < 4; ++i) driver.frame();
+    type_letters(driver, "a long text");
+    CHECK(*text == "a long text");
+    retype(driver, "");
+    driver.key(Key::escape);
+    text->clear();
+    driver.key(key, true);
+    for (int i = 0; i < 4; ++i) driver.frame();
+    driver.key(Key::z, true);
+    CHECK(text->empty());
+    driver.key(Key::escape);
+  }
+  driver.settle();
+  driver.key(Key::three);
+  double& step = driver.state().study.largest_step;
+  driver.click("study largest");
+  retype(driver, "0.125");
+  driver.key(Key::enter);
+  CHECK(step == 0.125);
+  step = 0.5;
+  driver.click("study largest");
+  for (int i = 0; i < 9; ++i) driver.key(Key::z, true);
+  CHECK(step == 0.5);
+}
+
+TEST_CASE("a scene that is dropped while a field is typed into keeps its own values") {
+  PanelDriver driver(quick(), "pendulum");
+  for (const auto& [key, text] : {std::pair{"title", "of the pendulum"}, std::pair{"solver.step", "0.04"}}) {
+    INFO(key);
+    begin(driver, key);
+    retype(driver, text);
+    InputEvent drop;
+    drop.kind = InputEvent::Kind::drop;
+    drop.text = UNFURL_ROOT "/assets/scenes/four_bar.toml";
+    driver.panel().handle(drop);
+    for (int i = 0; i < 4; ++i) driver.frame();
+    CHECK(driver.state().history.now() == open_document(drop.text, {}));
+    driver.state().history.undo();
+    CHECK(driver.state().history.now().edits.contains(key));
+    driver.settle();
+  }
 }
 
 }  // namespace typing_test
