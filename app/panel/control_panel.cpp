@@ -5,10 +5,12 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <stdexcept>
 #include <thread>
 
 #include "app/panel/actions.hpp"
 #include "app/panel/panes/panes.hpp"
+#include "core/text/nearest_name.hpp"
 #include "render/gl/graphics_error.hpp"
 
 namespace unfurl {
@@ -89,6 +91,14 @@ void ControlPanel::resize(int width, int height) {
       std::make_unique<Framebuffer>(options_.width, options_.height, 0);  // ImGui smooths its own edges
   damage_.forget();
   settling_ = 3;
+}
+
+const plot::Rect& ControlPanel::place(const std::string& key) const {
+  const auto& places = host_->ui().places;
+  const auto found = places.find(key);
+  if (found == places.end())
+    throw std::out_of_range("the frame before has no widget called " + in_quotes(key));
+  return found->second;
 }
 
 void ControlPanel::handle(const InputEvent& event) {

@@ -63,7 +63,7 @@ class ControlPanel {
   PanelState& state() { return session_.state(); }
   PanelSettings settings();  // as they are now, to be remembered
   // Where a widget was drawn in the last frame, by its key; throws std::out_of_range.
-  const plot::Rect& place(const std::string& key) const { return host_->ui().places.at(key); }
+  const plot::Rect& place(const std::string& key) const;
   bool has_place(const std::string& key) const { return host_->ui().places.contains(key); }
   const LiveSession& session() const { return session_; }
   LiveSession& session() { return session_; }

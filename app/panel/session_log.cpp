@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "core/export/checksum.hpp"
+#include "core/text/nearest_name.hpp"
 #include "core/text/version.hpp"
 
 namespace unfurl {
@@ -219,7 +221,10 @@ InputEvent event_of(const json& words) {
     if (words.size() > 3) e.time = words[3];
   } else if (kind == "key") {
     e.kind = Kind::key;
-    e.key = key_named(words.at(1).get<std::string>());
+    const std::string name = words.at(1);
+    e.key = key_named(name);
+    if (e.key == Key::none && name != name_of(Key::none))
+      throw std::out_of_range("no key is called " + in_quotes(name));
     e.down = words.at(2);
     for (std::size_t i = 3; i < words.size(); ++i) {
       if (words[i] == "control") e.control = true;
@@ -234,7 +239,7 @@ InputEvent event_of(const json& words) {
   } else if (kind == "close") {
     e.kind = Kind::close;
   } else {
-    throw std::out_of_range("no event is called \"" + kind + "\"");
+    throw std::out_of_range("no event is called " + in_quotes(kind));
   }
   return e;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plays what session_log.cpp wrote.
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "app/panel/control_panel.hpp"
 #include "app/panel/session_log.hpp"
@@ -98,7 +99,7 @@ Replay replay_session(GlContext& context, const std::string& path) {
   } catch (const json::exception&) {
     throw FileError(path, player ? "line " + std::to_string(number) + " is damaged or cut short"
                                  : "is no session; unfurl view --record FILE writes one");
-  } catch (const std::out_of_range& error) {  // a widget that is not there
+  } catch (const std::out_of_range& error) {  // a widget that is not there, an unknown word
     throw FileError(path, "line " + std::to_string(number) + ": " + error.what());
   }
   if (!player) throw FileError(path, "is empty");

@@ -103,8 +103,17 @@ TEST_CASE("a session that is written by hand names the widgets that it touches")
   const Replay replay = replay_session(*context, scratch.write("by_hand.jsonl", joined(lines)));
   REQUIRE(replay.differences.size() == 1);  // of a state that is not said whole
   CHECK(replay.differences[0].find("dark") == std::string::npos);
-  lines.emplace_back(R"({"frame": 0.01, "events": [["at", "no such widget", 0.5, 0.5]]})");
-  CHECK_THROWS_AS(replay_session(*context, scratch.write("wrong.jsonl", joined(lines))), FileError);
+  // What is unknown is said, and in which line.
+  const std::string line = "line " + std::to_string(lines.size() + 1);
+  for (const auto& [event, name] :
+       {std::pair{R"(["at", "no such widget", 0.5, 0.5])", "'no such widget'"},
+        std::pair{R"(["key", "any", true])", "'any'"}, std::pair{R"(["wave"])", "'wave'"}}) {
+    lines.emplace_back(std::string(R"({"frame": 0.01, "events": [)") + event + "]}");
+    const std::string file = scratch.write("wrong.jsonl", joined(lines));
+    CHECK_THROWS_WITH(replay_session(*context, file), Catch::Contains(line) && Catch::Contains(name));
+    CHECK_THROWS_AS(replay_session(*context, file), FileError);
+    lines.pop_back();
+  }
 }
 
 TEST_CASE("a session of a scale that no window has is refused in a line") {
