@@ -185,14 +185,19 @@ class MarginMaker {
     if (s == 0 && here.sum() == 0) return 0.0;
     double limit = infinite;
     bool fades = false;
-    for (const double side : {-dead * *end_, dead * *end_}) {
-      // Of a dead centre between here and `side` the forces at three times that are on one side.
-      if (s + 6 * side < 0 || s + 6 * side > *end_) continue;
-      const Balance near = balance(s + 3 * side, t, slips), far = balance(s + 6 * side, t, slips);
-      if (here.sum() >= 0.2 * near.sum() || near.sum() >= 0.8 * far.sum()) continue;
+    for (const double side : {-3 * dead * *end_, 3 * dead * *end_}) {
+      // A dead centre within `dead` of here: both of these are on one side of it.
+      const double at_near = s + side, at_far = s + 2 * side;
+      if (at_far < 0 || at_far > *end_) continue;
+      const auto there = [&](double at) { return balance(at, s > 0 ? time_at(at) : t, slips); };
+      const Balance near = there(at_near), far = there(at_far);
+      const double share = near.sum() / far.sum();
+      if (here.sum() >= 0.2 * near.sum() || share >= 0.6) continue;
       fades = true;
-      const double a = near.margin(), b = far.margin();
-      limit = std::min(limit, std::isfinite(a) && std::isfinite(b) ? std::max(2 * a - b, -1.0) : a);
+      // How far `near` is from where all is zero, of its way to `far`; that is here where it is to a higher
+      // order.
+      const double way = share > 0.4 ? share / (1 - share) : 1.0, a = near.margin(), b = far.margin();
+      limit = std::min(limit, std::isfinite(a) && std::isfinite(b) ? std::max(a + way * (a - b), -1.0) : a);
     }
     return fades ? limit : here.margin();
   }

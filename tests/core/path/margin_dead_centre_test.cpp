@@ -98,6 +98,35 @@ TEST_CASE("a limit at a dead centre is that of ratios that change on the way to 
   check_margin(margin_there(crank(0, 7, {spring("0")})).worst.margin, 2.1 / 3.5 - 1);
 }
 
+TEST_CASE("the least margin behind a dead centre that is passed is the limit there of what follows") {
+  // p = 0.1 t resists before, and drives against the load behind: p / 2 - 1, which rises with the time.
+  const Margin margin =
+      margin_there(crank(-74.6, 0,
+                         {"forces[0]={kind=\"load_over_time\",name=\"p\",nodes=[\"P\"],force=[-1,0,0],"
+                          "times=[0,100],values=[0,10]}"}));
+  CHECK(margin.arrives);
+  const double centre = margin.end_s * 150 / (150 + 74.6);
+  std::vector<const MarginPoint*> behind;
+  for (const MarginPoint& point : margin.points) {
+    if (point.s < centre + 1e-3 || behind.size() == 5) continue;
+    CHECK(point.margin == Approx(0.05 * point.t - 1).epsilon(1e-9));
+    behind.push_back(&point);
+  }
+  // Steps of some 5e-3 s: the fifth power of that is what five of them leave.
+  const double time = [&] {
+    double sum = 0;
+    for (const MarginPoint* a : behind) {
+      double weight = 1;
+      for (const MarginPoint* b : behind)
+        if (a != b) weight *= (centre - b->s) / (a->s - b->s);
+      sum += weight * a->t;
+    }
+    return sum;
+  }();
+  CHECK(margin.worst.margin == Approx(0.05 * time - 1).epsilon(2e-9));
+  CHECK(margin.worst.s == Approx(centre).epsilon(2e-5));
+}
+
 TEST_CASE("masts and rings that deploy to their dead centre have the margins of the poses before it") {
   for (const auto& [cells, sides] : {std::pair{2, 1}, {5, 1}, {6, 1}, {10, 1}, {20, 1}, {6, 4}, {20, 4}})
     for (const double angle : {0.0, 1e-9, 1.0})
