@@ -40,8 +40,7 @@ class PathRun {
         watch_(base_->structure, sides_, options.step),
         edges_(time_edges(base_->structure, options.step)),
         grid_(0.0, options, edges_),
-        run_{.trajectory = Trajectory(base_, closest_steps(options)), .options = options},
-        last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {
+        run_{.trajectory = Trajectory(base_, closest_steps(options)), .options = options} {
     refuse_friction();
   }
 
@@ -311,13 +310,14 @@ class PathRun {
         throw PathRefused("at t = " + seconds(motion_.t()) + ": two stops are met at once");
     const StopSide& stop = sides_.stops()[i];
     const double slope = watch_.gap_slope(i, motion_.s());
-    const double approach = -slope * motion_.v(), flight = motion_.t() - last_touch_[i];
-    last_touch_[i] = motion_.t();
+    const double approach = -slope * motion_.v();
     if (approach < 0) return;
     if (motion_.v() != 0)
       refuse_other_ways(sides_, i, model().system, state_at(motion_.t(), motion_.s(), motion_.v()));
-    if (sides_.impact_rests(i, approach, flight)) return stop_at(i, slope);
-    const double e = stop.restitution, taken = 0.5 * (1 - e * e) * motion_.v() * motion_.v();
+    const double e = stop.restitution, pull = -pull_off(slope, motion_.t(), 0);
+    if (sides_.impact_rests(i, approach) || (e < 1 && sides_.series_ends(i, e * approach, pull)))
+      return stop_at(i, slope);
+    const double taken = 0.5 * (1 - e * e) * motion_.v() * motion_.v();
     add_event(impact(stop), taken);
     motion_.set_speed(-e * motion_.v());
     append(state_at(motion_.t(), motion_.s(), motion_.v()));
@@ -474,7 +474,6 @@ class PathRun {
   std::unique_ptr<PathLaw> law_;
   PathMotion motion_;
   PathDrive drive_;
-  std::vector<double> last_touch_;  // of the stops
   Index drive_column_ = -1;
   std::optional<std::size_t> held_;
   double held_slope_ = 0;  // of the gap along the path

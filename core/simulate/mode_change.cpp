@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "core/math/box_complementarity.hpp"
 #include "core/math/factors.hpp"
@@ -29,17 +31,18 @@ constexpr double located = 1e-9;
 class Change {
  public:
   Change(OneSided& sides, const Model& base, const State& state, const std::vector<std::size_t>& which,
-         const VectorXd& left, double later)
+         const VectorXd& left, double later, bool crowd)
       : sides_(sides),
         base_(base),
         system_(base.system.at(state)),
         which_(which),
         left_(left),
-        later_(later) {
+        later_(later),
+        crowd_(crowd) {
     out_.state = state;
   }
 
-  ModeChange run(const std::function<bool(std::size_t, double)>& rests) {
+  ModeChange run() {
     std::vector<std::size_t> laws = sides_.laws_left(system_, out_.state);
     for (const std::size_t i : which_)
       if (!sides_.is_stop(i) && !sides_.is_friction(i) && std::ranges::find(laws, i) == laws.end())
@@ -57,10 +60,24 @@ class Change {
       spread_[i] = responses.spread(i);
     }
     settle(responses);
-    if (!strike(responses, rests)) return std::move(out_);
-    // What is asked of motors and how cables are stretched may have jumped with the rates.
-    if (!out_.impacts.empty() && turn_laws(sides_.laws_left(system_, out_.state))) acting.emplace(*this);
-    if (choose(acting->responses)) assign();
+    const VectorXd before = out_.state.w;
+    std::set<std::size_t> ended;  // stops whose series of impacts has accumulated
+    const auto end = [&](std::size_t i, double approach) {
+      return crowd_ || ended.contains(i) || sides_.impact_rests(i, approach);
+    };
+    for (;;) {
+      if (!strike(responses, end)) return std::move(out_);
+      // What is asked of motors and how cables are stretched may have jumped with the rates.
+      if (!out_.impacts.empty() && turn_laws(sides_.laws_left(system_, out_.state))) acting.emplace(*this);
+      if (!choose(acting->responses)) return std::move(out_);
+      const auto known = ended.size();
+      for (Index r = 0; r < count(); ++r)
+        if (series_ends(r)) ended.insert(side(r));
+      if (ended.size() == known) break;
+      out_.state.w = before;
+      out_.impacts.clear();
+    }
+    assign();
     return std::move(out_);
   }
 
@@ -190,8 +207,23 @@ class Change {
            rate * rate <= -2 * b_[r] * sides_.touching(side(r));
   }
 
+  // A stop that is left, and that what acts brings it back to.
+  bool is_pulled_back(Index r) const {
+    return sides_.is_stop(side(r)) && movable(r) && !rests_[static_cast<std::size_t>(r)] && rate_[r] > 0 &&
+           solution_.w[r] < -zero_acceleration(r);
+  }
+  bool series_ends(Index r) const {
+    return struck_[static_cast<std::size_t>(r)] && is_pulled_back(r) &&
+           sides_.series_ends(side(r), rate_[r], -solution_.w[r]);
+  }
+  // Crossed while it is left: a flight too short to be told, or of a crowd, within a step.
+  bool is_no_flight(Index r) const {
+    return crossed(r) && (crowd_ || !struck_[static_cast<std::size_t>(r)]) && is_pulled_back(r) &&
+           sides_.comes_again(rate_[r], -solution_.w[r], crowd_ ? 1.0 : OneSided::no_flight);
+  }
+
   bool choose(const PushResponses& responses) {
-    const VectorXd rate = responses.rates(out_.state.w);
+    rate_ = responses.rates(out_.state.w);
     State soon = out_.state;
     soon.t += later_;
     PushResponses::Accelerations by_themselves = responses.accelerations(base_.structure, soon);
@@ -223,8 +255,8 @@ class Change {
         slide(r, turns || (by_force ? b_[r] > 0 : sides_.slip(i) < 0) ? 1 : -1);
         continue;
       }
-      if (!at_rest(r, rate[r]) && !falls_back(r, rate[r])) {
-        if (sides_.is_friction(i)) slide(r, turns || rate[r] > 0 ? 1 : -1);
+      if (!at_rest(r, rate_[r]) && !falls_back(r, rate_[r])) {
+        if (sides_.is_friction(i)) slide(r, turns || rate_[r] > 0 ? 1 : -1);
         continue;
       }
       if (!movable(r)) {
@@ -246,10 +278,11 @@ class Change {
     if (!leaving.empty()) let_go(leaving);
     for (const Index r : leaving) leave(r);
     if (!leaving.empty() && !solve()) return false;
-    // Those that do not go after all: others push them back or hold them.
+    // Those that do not go after all: others push them back or hold them, or they are back at once.
     for (Index tries = count(); tries >= 0; --tries) {
       bool back = false;
-      for (Index r = 0; r < count(); ++r) back = (still[static_cast<std::size_t>(r)] && come_back(r)) || back;
+      for (Index r = 0; r < count(); ++r)
+        back = ((still[static_cast<std::size_t>(r)] || is_no_flight(r)) && come_back(r)) || back;
       if (!back) return true;
       if (!solve()) return false;
     }
@@ -442,12 +475,13 @@ class Change {
   const std::vector<std::size_t>& which_;
   const VectorXd& left_;  // of the sides' forces, or empty
   const double later_;    // accelerations are those of then
+  const bool crowd_;
   ModeChange out_;
   std::vector<std::size_t> rows_;  // sides that may push: stops that are touched, then friction
   std::vector<bool> struck_, passes_, rests_, movable_;
   std::vector<int> slips_;
   MatrixXd D_;
-  VectorXd spread_, b_, rounds_, low_, high_;
+  VectorXd spread_, rate_, b_, rounds_, low_, high_;
   double multiplier_ = 0;
   BoxSolution solution_;
 };
@@ -455,10 +489,9 @@ class Change {
 }  // namespace
 
 ModeChange change_modes(OneSided& sides, const Model& base, const State& state,
-                        const std::vector<std::size_t>& which,
-                        const std::function<bool(std::size_t stop, double approach)>& rests,
-                        const VectorXd& left, double later) {
-  return Change(sides, base, state, which, left, later).run(rests);
+                        const std::vector<std::size_t>& which, const VectorXd& left, double later,
+                        bool crowd) {
+  return Change(sides, base, state, which, left, later, crowd).run();
 }
 
 }  // namespace unfurl

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,12 +39,12 @@ struct ModeChange {
 };
 
 // What comes of it that `which` have crossed in a state of `base`'s coordinates; `base`: the model without
-// what is one-sided. Changes the modes of `sides`. `rests`: does an impact on a stop with this approach speed
-// end in rest? `left`: what locating the crossing left of zero of the forces of those that were held
-// (Crossing). `later`: forces and limits are taken so much later, as of what begins with nothing.
+// what is one-sided. Changes the modes of `sides`. An impact ends in rest where it is slow, or what acts
+// brings it back so soon that its series has accumulated. `left`: what locating the crossing left of zero of
+// the forces of those that were held (Crossing). `later`: forces and limits are taken so much later, as of
+// what begins with nothing. `crowd`: which have crossed without end; what comes back within a step rests.
 ModeChange change_modes(OneSided& sides, const Model& base, const State& state,
-                        const std::vector<std::size_t>& which,
-                        const std::function<bool(std::size_t stop, double approach)>& rests,
-                        const VectorXd& left = {}, double later = 0.0);
+                        const std::vector<std::size_t>& which, const VectorXd& left = {}, double later = 0.0,
+                        bool crowd = false);
 
 }  // namespace unfurl

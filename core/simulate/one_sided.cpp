@@ -250,16 +250,6 @@ bool OneSided::touches(std::size_t i, const System& system, const State& state) 
   return active_[i] || stops_.gap(i, system, state) - shift_[static_cast<Index>(i)] <= touching(i);
 }
 
-// The rest of a series with restitution e takes e / (1 - e) times as long as this flight. What goes on as
-// fast as ever, over ways that are no rounding, is thrown back by something else and is no such series.
-bool OneSided::impact_rests(std::size_t i, double approach, double flight) const {
-  constexpr double accumulated = 1e-4;  // of a step
-  const StopSide& stop = stops()[i];
-  const bool series =
-      stop.restitution < 1 && flight > 0 && flight <= accumulated * step_ && approach * flight <= touching(i);
-  return series || stop.restitution * approach <= stop.rest_speed;
-}
-
 void OneSided::touch(const System& system, const State& state) {
   for (std::size_t i = 0; i < stops_.size(); ++i)
     shift_[static_cast<Index>(i)] = active_[i] ? 0.0 : std::min(0.0, stops_.gap(i, system, state));

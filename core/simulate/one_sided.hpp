@@ -105,9 +105,21 @@ class OneSided {
   // or angle, in a step. Of accelerations nothing does but what rounding leaves of what they are the sum of.
   double touching(std::size_t i) const { return stops_.touching(measure(i)); }
   double zero_rate(std::size_t i) const { return touching(i) / step_; }
-  // Does an impact on a stop end in rest, after such a flight since the last one? So do slow ones, and those
-  // of a series that has accumulated.
-  bool impact_rests(std::size_t i, double approach, double flight) const;
+  // Does an impact on a stop end in rest, as slow ones do?
+  bool impact_rests(std::size_t i, double approach) const {
+    return stops_[i].restitution * approach <= stops_[i].rest_speed;
+  }
+  // Is what leaves a stop at this rate met again within a share of a step, by what pulls it back alone?
+  bool comes_again(double rate, double pull, double share) const {
+    return pull > 0 && 2 * rate <= pull * share * step_;
+  }
+  static constexpr double no_flight = 4e-6;  // of a step: about as short as crossing.cpp can tell
+  // Is a stop that throws back at this rate the end of a series? Of restitution e its rest takes 1 / (1 - e)
+  // times as long as that flight. What another stop throws back comes sooner and is no such series.
+  bool series_ends(std::size_t i, double rate, double pull) const {
+    const double e = stops_[i].restitution, accumulated = 1e-4 * e;
+    return comes_again(rate, pull, e < 1 ? std::max(accumulated, no_flight) : no_flight);
+  }
   // Of rates at which nothing holds: what rounding the length leaves in a step.
   double rounded_rate(std::size_t i) const { return rounded_share * zero_rate(i); }
   // As fast as the fastest coordinate is [m/s], or as that turns [rad/s].

@@ -69,7 +69,6 @@ void Stepper::Loop::archive(Archive& archive) {
   archive(new_);
   part_ = new_;
   archive_models(archive);
-  archive(last_touch_);
   archive(turning_back_);
   archive(turned_);
   for (double* x : {&target_, &part_end_, &last_step_, &crowd_time_, &unwatched_until_, &margin_})

@@ -75,8 +75,7 @@ class Stepper::Loop {
         turning_back_(run.trajectory.structure()),
         turned_(run.trajectory.structure()),
         start_(start),
-        grid_(start, run.options, time_edges(run.trajectory.structure(), run.options.step)),
-        last_touch_(sides_.size(), -std::numeric_limits<double>::infinity()) {}
+        grid_(start, run.options, time_edges(run.trajectory.structure(), run.options.step)) {}
 
   void begin_run() {
     model_changed();
@@ -349,10 +348,7 @@ class Stepper::Loop {
   ModeChange modes_after(const State& state, const std::vector<std::size_t>& which = {},
                          const VectorXd& left = {}, double later = 0.0) {
     sides_.weigh(model(), now());
-    const auto rests = [&](std::size_t i, double approach) {
-      return sides_.impact_rests(i, approach, state.t - std::exchange(last_touch_[i], state.t));
-    };
-    return change_modes(sides_, *base_, state, which, rests, left, later);
+    return change_modes(sides_, *base_, state, which, left, later);
   }
 
   // Goes on in the modes that were found. False where there are none.
@@ -393,9 +389,7 @@ class Stepper::Loop {
     for (std::size_t i = 0; i < sides_.stops().size(); ++i)
       if (!sides_.active(i) && sides_.touches(i, system(), now())) touched.push_back(i);
     if (!touched.empty()) warn_once(": impacts without end; what touches a stop is held");
-    for (const std::size_t i : touched) last_touch_[i] = now().t;
-    return apply(
-        change_modes(sides_, *base_, in_base(now()), touched, [](std::size_t, double) { return true; }));
+    return apply(change_modes(sides_, *base_, in_base(now()), touched, {}, 0.0, true));
   }
 
   bool stop_watching() {
@@ -479,7 +473,6 @@ class Stepper::Loop {
   const System* controlled_ = nullptr;
   Probe begin_;  // the present state
   bool have_begin_ = false;
-  std::vector<double> last_touch_;  // of each stop
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
   bool deployed_ = false, ended_ = false, regular_ = false;
