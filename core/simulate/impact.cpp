@@ -14,7 +14,8 @@ constexpr double rate_rounding = 1e-14;  // of the largest rate
 // Of all rates before an impact: it stops everything, and what acts, not what rounding leaves of the motion,
 // tells whether the stop is left.
 constexpr double all_stopped = 1e-13;
-// Seconds of work, for masses of 1e12 to one that lose nothing: what goes on behind that is stopped.
+// Masses of r to one that lose nothing take pi sqrt(r), 31413 of 1e8 to one; from 1e9 to one on, rounding
+// leaves D without rank, and there is no answer. What goes on behind that many, seconds of work, is stopped.
 constexpr int most_blows = 1'000'000;
 
 class Blows {

@@ -65,12 +65,11 @@ class Change {
     const auto end = [&](std::size_t i, double approach) {
       return crowd_ || ended.contains(i) || sides_.impact_rests(i, approach);
     };
-    for (;;) {
+    for (std::size_t known = 0;; known = ended.size()) {
       if (!strike(responses, end)) return std::move(out_);
       // What is asked of motors and how cables are stretched may have jumped with the rates.
       if (!out_.impacts.empty() && turn_laws(sides_.laws_left(system_, out_.state))) acting.emplace(*this);
       if (!choose(acting->responses)) return std::move(out_);
-      const auto known = ended.size();
       for (Index r = 0; r < count(); ++r)
         if (series_ends(r)) ended.insert(side(r));
       if (ended.size() == known) break;
@@ -113,7 +112,12 @@ class Change {
   }
   bool fail_at(Index row) {
     const StopSide& at = sides_.stops()[side(row)];
-    out_.failure = (at.reeled ? "a drive pulls at the cable " : "a drive pushes against the stop ") + at.name;
+    const VectorXd mass = system_.mass().diagonal();
+    const bool unlike = movable(row) && mass.maxCoeff() > 1e8 * mass.minCoeff();
+    out_.failure = (at.reeled ? "a drive pulls at the cable "
+                    : unlike  ? "a drive or what weighs some 1e9 times as much pushes against the stop "
+                              : "a drive pushes against the stop ") +
+                   at.name;
     return false;
   }
   void turn(std::size_t i, bool active) { sides_.set_active(i, active), tell(i); }
@@ -207,7 +211,6 @@ class Change {
            rate * rate <= -2 * b_[r] * sides_.touching(side(r));
   }
 
-  // A stop that is left, and that what acts brings it back to.
   bool is_pulled_back(Index r) const {
     return sides_.is_stop(side(r)) && movable(r) && !rests_[static_cast<std::size_t>(r)] && rate_[r] > 0 &&
            solution_.w[r] < -zero_acceleration(r);
