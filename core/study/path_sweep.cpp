@@ -13,6 +13,7 @@
 #include "core/path/path_scope.hpp"
 #include "core/path/path_time.hpp"
 #include "core/scene/build.hpp"
+#include "core/scene/toml_tree.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/structures/family.hpp"
@@ -194,9 +195,11 @@ std::vector<std::string> plain_numbers(const SweepPlan& plan, const Family& fami
   return names;
 }
 
-// Scenes with a number put into them are those that are read with it.
+// Scenes with a number put into them are those that are read with it. Of a value that is no TOML (".5", an
+// error) it is said of its point.
 bool read_alike(const SweepPlan& plan, const Scene& base, const std::vector<std::string>& names) {
-  for (std::size_t a = 0; a < names.size(); ++a)
+  for (std::size_t a = 0; a < names.size(); ++a) {
+    for (const std::string& value : plan.axes[a].values) parse_toml("value = " + value + "\n", "");
     for (const std::size_t i : {std::size_t{0}, plan.axes[a].values.size() - 1}) {
       Scene put = base;
       put.structure.set(names[a], plan.axes[a].numbers[i]);
@@ -208,6 +211,7 @@ bool read_alike(const SweepPlan& plan, const Scene& base, const std::vector<std:
       for (std::size_t l = 0; l < x.loads.size(); ++l)
         if (x.loads[l].force != y.loads[l].force) return false;
     }
+  }
   return true;
 }
 

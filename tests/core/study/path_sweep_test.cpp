@@ -117,6 +117,18 @@ TEST_CASE("gravity and loads work along the path of a sweep as in a run") {
   }
 }
 
+// Their points are what every other run of them is: errors.
+TEST_CASE("values that are no TOML are no numbers of a path") {
+  for (const char* value : {".5", "5.", "011"}) {
+    INFO(value);
+    std::vector<std::string> ignored;
+    CHECK_FALSE(PathSweep(plan_of("scissor_mast", {"structure.tip_force=10," + std::string(value) + ",20"}))
+                    .measure(0, ignored));
+  }
+  std::vector<std::string> row;
+  CHECK(PathSweep(plan_of("scissor_mast", {"structure.tip_force=10,2e1,0.5,40"})).measure(0, row));
+}
+
 TEST_CASE("a sweep over the method, or of what it makes, solves the full model") {
   for (const SweepPlan& plan :
        {plan_of("hoop6_sector", {"solver.stages=2,3"}, {"structure.fold_angle=40"}),
