@@ -205,6 +205,14 @@ def test_sweeps_take_words_truth_values_and_lists():
     for pull, energy in zip(pulls, table["energy_J"]):
         one = unfurl.Scene("pendulum", set={"solver.end_time": 0.1, "gravity.acceleration": pull})
         assert energy == one.run().measure("energy")
+    pushed = unfurl.Scene("pendulum", set={"solver.end_time": 0.1, "loads": [{"nodes": ["*"], "force": [0, 0, -1]}]})
+    loads = [{"nodes": ["*"], "force": [0.5, 0, k]} for k in (0, -2)]
+    table = pushed.sweep({"loads[0]": loads}, ["energy"])
+    for load, energy in zip(loads, table["energy_J"]):
+        one = unfurl.Scene("pendulum", set={"solver.end_time": 0.1, "loads": [load]})
+        assert energy == one.run().measure("energy")
+    with pytest.raises(TypeError, match="None is no value of a scene"):
+        swing.sweep({"solver.step": [None]}, "energy")
     with pytest.raises(unfurl.SceneError, match="must be a number"):  # which a text is not
         swing.sweep({"solver.step": ["0.01"]}, "energy")
 

@@ -51,7 +51,7 @@ def _axis(values: Any) -> list:
     values = [values] if isinstance(values, str) else list(values)
 
     def is_number(x: Any) -> bool:
-        return not isinstance(x, (str, bool, np.bool_)) and (not isinstance(x, Iterable) or np.ndim(x) == 0)
+        return not isinstance(x, (str, bool, np.bool_)) and hasattr(x, "__float__") and np.ndim(x) == 0
 
     def is_word(x: Any) -> bool:
         return isinstance(x, str) and re.fullmatch("[A-Za-z_][A-Za-z0-9_-]*", x) is not None and x not in ("true", "false", "inf", "nan")
