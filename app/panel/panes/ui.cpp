@@ -101,6 +101,16 @@ void wrapped(const ImVec4& color, const std::string& text) {
   ImGui::PopStyleColor();
 }
 
+plot::Rect text_on_ground(const Ui& ui, const ImVec2& at, const char* text, float opaque, float room) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, room);
+  const ImVec2 low(at.x - ui.px(5), at.y - ui.px(2));
+  const ImVec2 high(at.x + size.x + ui.px(5), at.y + size.y + ui.px(2));
+  list.AddRectFilled(low, high, ui.color(ui.theme.window, opaque), ui.px(4));
+  list.AddText(nullptr, 0, at, ui.color(ui.theme.text), text, nullptr, room);
+  return {low.x, low.y, high.x, high.y};
+}
+
 bool button(Ui& ui, const std::string& key, const std::string& label, const std::string& help, bool enabled) {
   ImGui::BeginDisabled(!enabled);
   const bool pressed = ImGui::Button((label + "##" + key).c_str());

@@ -85,6 +85,9 @@ std::string shortened(const std::string& text, float width);
 
 void wrapped(const ImVec4& color, const std::string& text);  // over as many lines as it takes
 
+// On a ground of its own, in lines of at most `room` [pixels; 0: in one]; where that is.
+plot::Rect text_on_ground(const Ui& ui, const ImVec2& at, const char* text, float opaque, float room = 0);
+
 // A button of the panel; greyed out where it is not enabled.
 bool button(Ui& ui, const std::string& key, const std::string& label, const std::string& help,
             bool enabled = true);

@@ -151,13 +151,9 @@ void draw_pose(const Ui& ui, const PanelState& state, const SceneView& view, con
 // Its name beside the pointer.
 void name_hovered(const Ui& ui, const PanelState& state) {
   if (state.hovered.kind == Selection::Kind::none) return;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 mouse = ImGui::GetIO().MousePos, size = ImGui::CalcTextSize(state.hovered.name.c_str());
-  const ImVec2 low(mouse.x + ui.px(14), mouse.y - size.y - ui.px(8));
-  list.AddRectFilled({low.x - ui.px(5), low.y - ui.px(2)},
-                     {low.x + size.x + ui.px(5), low.y + size.y + ui.px(2)}, ui.color(ui.theme.window, 0.92f),
-                     ui.px(4));
-  list.AddText(low, ui.color(ui.theme.text), state.hovered.name.c_str());
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  text_on_ground(ui, {mouse.x + ui.px(14), mouse.y - ImGui::GetFontSize() - ui.px(8)},
+                 state.hovered.name.c_str(), 0.92f);
 }
 
 void mark(const Ui& ui, const PanelState& state, const SceneView& view, const Frame& frame,
@@ -253,7 +249,7 @@ void draw_readings(const Ui& ui, const PanelState& state, const SceneView& view,
 }
 
 // The older run stays in sight, dimmed where the newer one takes its time: until then nothing is drawn twice.
-void draw_pending(const Ui& ui, const PanelState& state, const Frame& frame) {
+void draw_pending(Ui& ui, const PanelState& state, const Frame& frame) {
   if (!state.simulation.late) return;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 high(frame.low.x + frame.size.x, frame.low.y + frame.size.y);
@@ -265,7 +261,7 @@ void draw_pending(const Ui& ui, const PanelState& state, const Frame& frame) {
                      ui.color(ui.theme.accent));
   char text[96];
   std::snprintf(text, sizeof text, "%s %.0f %%", state.simulation.doing.c_str(), 100 * done);
-  list.AddText({frame.low.x + ui.px(12), high.y - ui.px(26)}, ui.color(ui.theme.text), text);
+  ui.places["progress"] = text_on_ground(ui, {frame.low.x + ui.px(14), high.y - ui.px(26)}, text, 0.85f);
 }
 
 // On a ground of its own: the structure may be behind it.
@@ -416,19 +412,18 @@ void draw_build_options(Ui& ui, PanelState& state, const Frame& frame) {
     state.intents.emplace_back(&LiveSession::remove_selected);
 }
 
-// What the tool that is taken does.
+// What the tool that is taken does: above what it lets choose, and above the row of the progress and the
+// legend.
 void draw_tool(Ui& ui, PanelState& state, const Frame& frame) {
   if (state.tool == Tool::read) return;
-  if (state.tool == Tool::build) draw_build_options(ui, state, frame);
-  const char* hint = state.tool == Tool::pull
-                         ? "Pull: drag a node; drives let go. Esc: back to the run"
-                         : "Build: click twice for a node, drag it, Shift click from node to node for a rod";
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 at(frame.low.x + ui.px(14), frame.low.y + frame.size.y - ui.px(26));
-  const ImVec2 size = ImGui::CalcTextSize(hint);
-  list.AddRectFilled({at.x - ui.px(5), at.y - ui.px(3)}, {at.x + size.x + ui.px(5), at.y + size.y + ui.px(3)},
-                     ui.color(ui.theme.window, 0.85f), ui.px(4));
-  list.AddText(at, ui.color(ui.theme.text), hint);
+  const bool build = state.tool == Tool::build;
+  if (build) draw_build_options(ui, state, frame);
+  const char* hint = build ? "Build: click twice for a node, drag it, Shift click from node to node for a rod"
+                           : "Pull: drag a node; drives let go. Esc: back to the run";
+  const float room = frame.size.x - ui.px(28), above = ui.px(build ? 68 : 34);
+  const float tall = ImGui::CalcTextSize(hint, nullptr, false, room).y;
+  const ImVec2 at(frame.low.x + ui.px(14), frame.low.y + frame.size.y - above - tall);
+  ui.places["tool hint"] = text_on_ground(ui, at, hint, 0.85f, room);
 }
 
 void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const Frame& frame) {

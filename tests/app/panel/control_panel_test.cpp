@@ -355,6 +355,33 @@ TEST_CASE("a change is shown with its run, once, and is told of before only wher
   }
 }
 
+// In a wide view and in one that breaks the hint's line.
+TEST_CASE("what a tool does and how far a run is are said beside one another") {
+  for (const int width : {1000, 560})
+    for (const Key tool : {Key::b, Key::g}) {
+      CAPTURE(width, name_of(tool));
+      PanelOptions options = PanelDriver::small();
+      options.width = width;
+      options.moment = 0.0;
+      options.measure_errors = false;
+      PanelDriver driver(options);
+      driver.key(tool);
+      SceneDocument changed = driver.state().history.now();
+      changed.edits["solver.step"] = 0.097 * driver.state().shown->scene.solver.step;
+      driver.state().history.replace(changed);
+      for (int frames = 0; !driver.panel().has_place("progress"); ++frames) {
+        REQUIRE(frames < 60000);
+        driver.frame(0);
+      }
+      const plot::Rect hint = driver.panel().place("tool hint"), done = driver.panel().place("progress");
+      CHECK_FALSE(hint.overlaps(done));
+      for (const plot::Rect& text : {hint, done}) {
+        CHECK(driver.panel().place("view").contains(text));
+        if (tool == Key::b) CHECK_FALSE(text.overlaps(driver.panel().place("build plane")));
+      }
+    }
+}
+
 TEST_CASE("what is painted in parts is what would be painted at once") {
   PanelDriver driver;
   driver.key(Key::p);
