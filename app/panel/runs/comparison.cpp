@@ -13,6 +13,7 @@ namespace unfurl {
 
 namespace {
 
+constexpr double round_off = 1e-12;  // of the largest value on the way: what was given and taken back
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 double largest(const LiveRun& run, std::string_view column) {
@@ -100,7 +101,9 @@ std::vector<ComparisonRow> compare(const LiveRun& a, const LiveRun& b, const Tra
   for (const Series* column : drive_columns(a, b)) {
     const bool energy = column->unit == "J";
     const auto of = [&](const LiveRun& run) { return (energy ? last : largest)(run, column->name); };
-    add(energy ? column->label : "peak " + column->label, column->unit, of(a), of(b), false);
+    const double x = of(a), y = of(b), most = std::fmax(largest(a, column->name), largest(b, column->name));
+    add(energy ? column->label : "peak " + column->label, column->unit, x, y, false);
+    if (std::fmax(std::abs(x), std::abs(y)) <= round_off * most) rows.back().change.clear();
   }
   for (ComparisonRow& row : rows) {
     if (row.label != "peak rod force") continue;
