@@ -19,6 +19,7 @@
   X(GetDisplayDPI)              \
   X(GetDisplayUsableBounds)     \
   X(SetWindowSize)              \
+  X(SetWindowPosition)          \
   X(GL_SetAttribute)            \
   X(GL_CreateContext)           \
   X(GL_DeleteContext)           \

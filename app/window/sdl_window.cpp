@@ -79,6 +79,9 @@ class SdlWindow final : public GlContext {
       return std::min(most, static_cast<int>(std::lround(static_cast<float>(wanted) * factor)));
     };
     sdl().SetWindowSize(window_, side(width, room.w), side(height, room.h));
+    if (width <= room.w && height <= room.h) return;
+    const int centre = static_cast<int>(SDL_WINDOWPOS_CENTERED);  // it hung over the edges
+    sdl().SetWindowPosition(window_, centre, centre);
   }
   bool visible() const {
     return (sdl().GetWindowFlags(window_) & (SDL_WINDOW_MINIMIZED | SDL_WINDOW_HIDDEN)) == 0;

@@ -330,6 +330,27 @@ TEST_CASE("a signal ends the window with 130 and a word, and what it remembers i
   }
 }
 
+// Nothing but the program places it there: no window manager runs.
+TEST_CASE("a screen smaller than the window holds it whole") {
+  if (tools_missing()) return;
+  const ScratchDirectory scratch;
+  const XServer server(96, 800, 600);
+  const pid_t window = open_window(server, scratch, "pendulum");
+  REQUIRE(server.tool("search --sync --name Unfurl") == 0);
+  const auto is = [&](const char* line) {  // within ten seconds
+    const std::string asked =
+        "search --name Unfurl getwindowgeometry --shell | grep -qx " + std::string(line);
+    for (int i = 0; i < 100 && server.tool(asked) != 0; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return server.tool(asked) == 0;
+  };
+  CHECK(is("WIDTH=800"));
+  CHECK(is("X=0"));
+  CHECK(is("Y=0"));
+  ::kill(window, SIGTERM);
+  CHECK(end_of(window, 10) == 130);
+}
+
 TEST_CASE("a display that goes away ends the window with its exit code, in one line") {
   if (tools_missing()) return;
   const ScratchDirectory scratch;
