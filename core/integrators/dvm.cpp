@@ -365,12 +365,18 @@ void Dvm::settle_end() {
   eq_.phi.col(last) = phi;
 }
 
-// Does the pose of the factorisation lie so near to a singular one that rounding tells its weak mode?
-bool Dvm::is_weak() {
-  const double weakest = saddle_.weakest_pivot(needed_pivot_);
-  const Index redundant = saddle_.redundant_below(needed_pivot_);
-  usual_redundancy_ = std::min(usual_redundancy_, redundant);
-  return redundant > usual_redundancy_ || (weakest < needed_pivot_ && weakest < weak_pose * weak_pose);
+// Does the step end so near to a singular pose that rounding tells its weak mode? Redundant rows look weak,
+// too, but do so at its start as well.
+bool Dvm::ends_weakly(StepReport& report) {
+  constexpr double bound = weak_pose * weak_pose;
+  const Index below = saddle_.rows_below(bound);
+  if (below <= never_weak_) return false;
+  const Index lost = saddle_.rows_below_finely(bound);
+  freeze(eq_.start_pose(), report);
+  const bool more = frozen_ && lost > saddle_.rows_below_finely(bound);
+  freeze(pose_, report);
+  if (!more) never_weak_ = below;
+  return more;
 }
 
 // p_1 and the velocity-level constraint: [M G^T; G 0] [w_1; mu] = [p_1 free; g'(t)] at the end pose, mu = h
@@ -379,7 +385,7 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   eq_.end_momentum(p1_);
   eq_.pose(c_.s - 1, pose_);
   freeze(pose_, report);
-  report.weak_end = frozen_ && needed_pivot_ > 0 && is_weak();
+  if (tight_ && frozen_) saddle_.weakest_pivot(needed_pivot_);
   if (system_.rheonomic()) system_.target_rate(state.t + h, rate_);
   if (!eq_.rods.still(unheld, state.t + h, h, pose_, {G_, p1_, rate_}, w1_, mu_))
     saddle_.solve(p1_, rate_, w1_, mu_);
@@ -409,6 +415,7 @@ void Dvm::finish(State& state, double h, StepReport& report) {
       (system_.rheonomic() || system_.by_tension() || system_.elastic_rods()->has_power()))
     state.stage_tension = unresolved ? eq_.stage_tension(unheld) : eq_.rods.tension;
   if (unresolved) eq_.end_tension(w1_, followed, state.tension, state.tension_error);
+  report.weak_end = !eq_.at_ends && ends_weakly(report);
 }
 
 // Rates at the Gauss points are those that the damper leaves, the rate at the end is not: w_1 becomes what

@@ -132,7 +132,7 @@ class Dvm final : public Integrator {
   bool stiff_iterations(const State& state, StepReport& report);
   bool steered_iterations(const State& state, StepReport& report);
   bool needs_care();
-  bool is_weak();
+  bool ends_weakly(StepReport& report);
   bool tight_iterations(const State& state, StepReport& report);
   void arrive(State& state);
   template <LaneCount K>
@@ -177,7 +177,7 @@ class Dvm final : public Integrator {
   double harmless_ = harmless;
   double needed_pivot_ = 0;  // of the weakest mode, for this step to do without care
   bool tight_ = false;       // this step is solved with care for weak modes
-  Index usual_redundancy_ = std::numeric_limits<Index>::max();  // the least of all poses
+  Index never_weak_ = 0;     // as many rows as may look weak and are none but redundant
   CarriedSum carried_;
 };
 

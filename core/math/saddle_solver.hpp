@@ -44,9 +44,10 @@ class SaddleSolver {
   // regularisation or round-off hide are found by factorise_finely, whose factors are then in use. The sparse
   // order is left where it cannot tell.
   double weakest_pivot(double bound);
-  // How many rows count as redundant in this pose, of those with a pivot below `bound`; weakest_pivot(bound)
-  // comes first. More than in others: the pose is singular.
-  Index redundant_below(double bound) const;
+  // How many rows have a smaller pivot, as far as the factors in use tell: all that have, and redundant ones
+  // that depend on few others. And by factors in twice the digits, which are in use then where a row is weak.
+  Index rows_below(double bound) const;
+  Index rows_below_finely(double bound);
   // False where a row that is not known to be redundant may have a smaller one, by the factors in use. Of a
   // row that depends on others, c of each, they have e (1 + |c|^2): in doubt, ask for many e.
   bool shows_none_below(double bound) const;

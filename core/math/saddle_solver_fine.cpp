@@ -81,11 +81,21 @@ double SaddleSolver::weakest_pivot(double bound) {
   return std::min(bound, weakest_);
 }
 
-Index SaddleSolver::redundant_below(double bound) const {
+Index SaddleSolver::rows_below(double bound) const {
   Index below = 0;
-  for (Index r = 0; r < m_ && redundant_ > 0; ++r)
-    below += pivot_of_row(r) < bound + 2 * regularisation_ ? 1 : 0;
-  return std::min(below, redundant_);
+  for (Index r = 0; r < m_; ++r) below += pivot_of_row(r) < 2 * (bound + regularisation_) ? 1 : 0;
+  return below;
+}
+
+Index SaddleSolver::rows_below_finely(double bound) {
+  Index below = 0;
+  if (!factorise_finely()) return below;
+  for (Index r = 0; r < m_; ++r) {
+    const int place = safe_.place[static_cast<std::size_t>(n_ + r)];
+    below += std::abs(fine_->factors.pivot(static_cast<Index>(place))) < bound ? 1 : 0;
+  }
+  fine_ready_ = weakest_ <= clear_of_regularisation * regularisation_;
+  return below;
 }
 
 bool SaddleSolver::factorise_finely() {

@@ -35,42 +35,70 @@ void Stepper::Loop::step_over(Probe& to, double& h) {
   }
 }
 
+namespace {
+
+// Of the forces of six states, does one not follow from the other five, as what grows without bound does not?
+bool is_unbounded(const std::array<VectorXd, 6>& lambda, std::size_t nearest, const auto& place) {
+  constexpr double smooth = 0.1, nothing = 1e-3;
+  VectorXd told = VectorXd::Zero(lambda[0].size()), most = told;
+  for (std::size_t k = 0; k < lambda.size(); ++k) {
+    most = most.cwiseMax(lambda[k].cwiseAbs());
+    if (k == nearest) continue;
+    const auto others = [&](std::size_t other) { return place(other < nearest ? other : other + 1); };
+    told += lagrange_weight(k < nearest ? k : k - 1, lambda.size() - 1, place(nearest), others) * lambda[k];
+  }
+  const double largest = most.size() > 0 ? most.maxCoeff() : 0.0;
+  for (Index r = 0; r < most.size(); ++r)
+    if (most[r] > nothing * largest && std::abs(told[r] - lambda[nearest][r]) > smooth * most[r]) return true;
+  return false;
+}
+
+}  // namespace
+
 // A step that ends in a singular pose, as where its grid brings one: on the polynomial through the states of
-// shorter and longer ones, which rounding leaves their digits. The next step begins there as a run does.
-// Where forces grow without bound towards the pose, as the inverse of what is left to it, none can begin
-// there: it stays a weak end.
+// shorter and longer ones, which rounding leaves their digits; of shorter ones alone where time has an edge.
+// The next step begins there as a run does. Where forces grow without bound towards the pose none can: it
+// stays a weak end.
 void Stepper::Loop::settle_in_pose(Probe& to, double h) {
   constexpr std::size_t states = 6;
   constexpr double apart = 0.01;  // of the structure's size, at most, and of a step:
-  constexpr double share_apart = 0.2;
-  constexpr double least = 1e-4;   // of the structure's size: what does not move is where it is
-  constexpr double unbounded = 2;  // times as large where they are a third as far from it
+  constexpr double share_apart = 0.3;
+  constexpr double least = 1e-4;  // of the structure's size: what does not move is where it is
   to.report.weak_end = false;
   const double way = fastest_way(to) / reference_length(base_->structure),
-               share = std::min(share_apart, apart / way);
-  const auto length = [&](std::size_t k) {
-    return 1 + share * (static_cast<double>(k) - (k < states / 2 ? 3 : 2));
-  };
-  if (!(way > least) || to.state.tension.size() > 0 || to.state.stage_tension.size() > 0 ||
-      now().t + length(states - 1) * h > grid_.next_edge(now().t))
-    return;
+               share = std::min(share_apart, apart / way), edge = grid_.next_edge(now().t);
+  if (!(way > least) || to.state.tension.size() > 0 || to.state.stage_tension.size() > 0) return;
   const auto integrator = fresh_integrator();
-  State out = to.state;
-  for (VectorXd* x : {&out.z, &out.w, &out.lambda}) x->setZero();
-  std::array<double, states> force{};
-  for (std::size_t k = 0; k < states; ++k) {
-    State state = now();
-    integrator->restart();
-    const StepReport report = integrator->step(state, length(k) * h);
-    if (!report.ok() || report.weak_end || state.lambda.size() != out.lambda.size()) return;
-    const double weight = lagrange_weight(k, states, 1.0, length);
-    out.z += weight * state.z;
-    out.w += weight * state.w;
-    out.lambda += weight * state.lambda;
-    force[k] = state.lambda.norm();
+  State out;
+  std::array<VectorXd, states> lambda;
+  const auto gather = [&](const auto& length) {
+    out = to.state;
+    for (VectorXd* x : {&out.z, &out.w, &out.lambda}) x->setZero();
+    for (std::size_t k = 0; k < states; ++k) {
+      State state = now();
+      integrator->restart();
+      const StepReport report = integrator->step(state, length(k) * h);
+      if (!report.ok() || report.weak_end || state.lambda.size() != out.lambda.size()) return false;
+      const double weight = lagrange_weight(k, states, 1.0, length);
+      out.z += weight * state.z;
+      out.w += weight * state.w;
+      out.lambda += weight * state.lambda;
+      lambda[k] = std::move(state.lambda);
+    }
+    return true;
+  };
+  for (const double other : {1.0, 0.83, 0.91, 0.71, 0.59, 0.0}) {  // some may end where no step can
+    if (other == 0) return;
+    const bool barred = edge < grid_.end() && now().t + (1 + 3 * other * share) * h > edge;
+    const double d = other * (barred ? std::min(share, 0.5 * share_apart) : share);
+    const auto length = [&](std::size_t k) {
+      return 1 + d * (static_cast<double>(k) - (barred ? 6 : k < states / 2 ? 3 : 2));
+    };
+    if (!gather(length)) continue;
+    to.report.weak_end = is_unbounded(lambda, barred ? states - 1 : states / 2 - 1, length);
+    if (to.report.weak_end) return;
+    break;
   }
-  to.report.weak_end = force[2] > unbounded * force[0] && force[3] > unbounded * force[5];
-  if (to.report.weak_end) return;
   if (system().followed_angles() > 0) system().at(now()).count_on(out);
   to.state = std::move(out);
   integrator_->restart();
