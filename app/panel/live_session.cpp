@@ -330,8 +330,9 @@ OwnFile LiveSession::own_file_now() const {
 }
 
 void LiveSession::save(const std::string& typed) {
-  const std::string path = at_home(typed);
+  std::string path = at_home(typed);
   std::error_code unknown;
+  if (std::filesystem::equivalent(path, state_.history.now().path, unknown)) path = state_.history.now().path;
   const bool own = path == state_.history.now().path;
   if (own ? own_file_now() != OwnFile::changed : !std::filesystem::exists(path, unknown))
     return save_now(path);

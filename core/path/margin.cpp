@@ -178,6 +178,17 @@ class MarginMaker {
     return out;
   }
 
+  // Whether each source acts by less here than there, a part of it at most: friction that goes on holding
+  // does not, and decides, however small.
+  bool all_fade(double here, double t, double there, double t_there, bool slips) const {
+    constexpr double part = 0.2;
+    for (std::size_t k = 0; k < out_.sources.size(); ++k) {
+      const ScalarLaw::Value at = force(k, here, t, slips), near = force(k, there, t_there, slips);
+      if (std::abs(at.Q) > rounding * at.scale && std::abs(at.Q) >= part * std::abs(near.Q)) return false;
+    }
+    return true;
+  }
+
   // At a dead centre, where all that acts fades away, the least of the limits from its sides. One that the
   // structure rests in at the start has nothing that drives it on.
   double static_margin(double s, double t, bool slips = false) const {
@@ -189,10 +200,11 @@ class MarginMaker {
       // A dead centre within `dead` of here: both of these are on one side of it.
       const double at_near = s + side, at_far = s + 2 * side;
       if (at_far < 0 || at_far > *end_) continue;
-      const auto there = [&](double at) { return balance(at, s > 0 ? time_at(at) : t, slips); };
-      const Balance near = there(at_near), far = there(at_far);
+      const auto time = [&](double at) { return s > 0 ? time_at(at) : t; };
+      if (!all_fade(s, t, at_near, time(at_near), slips)) continue;
+      const Balance near = balance(at_near, time(at_near), slips), far = balance(at_far, time(at_far), slips);
       const double share = near.sum() / far.sum();
-      if (here.sum() >= 0.2 * near.sum() || share >= 0.6) continue;
+      if (share >= 0.6) continue;
       fades = true;
       // How far `near` is from where all is zero, of its way to `far`; that is here where it is to a higher
       // order.

@@ -160,4 +160,17 @@ TEST_CASE("masts and rings that deploy to their dead centre have the margins of 
   }
 }
 
+// Friction needs no lever: it holds where nothing drives, however small it is.
+TEST_CASE("friction that goes on holding leaves no margin at a dead centre") {
+  for (const double kinetic : {1e-9, 1e-5, 1e-2})
+    for (const double deployed : {0.0, -25.3}) {
+      INFO(kinetic << " N m, deployed at " << deployed << " deg");
+      const Margin margin = margin_there(
+          crank(deployed, 1.7,
+                {"forces[0]={kind=\"friction\",name=\"fr\",nodes=[\"P\",\"O\",\"Q\"],axis=[0,1,0],kinetic=" +
+                 exact_number(kinetic) + "}"}));
+      CHECK(margin.worst.margin <= -1 + 1e-6);
+    }
+}
+
 }  // namespace margin_dead_centre_test
