@@ -289,9 +289,13 @@ std::string words_of_large_stretch(const Trajectory& trajectory) {
     const VectorXd* u = trajectory.stretch(i);
     if (!u || u->size() == 0) continue;
     const VectorXd q = trajectory.node_positions(i);
-    const auto nodes = q.reshaped(3, q.size() / 3);
-    const double wide = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).maxCoeff(),
-                 far = u->lpNorm<Eigen::Infinity>();
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (const Rod& rod : trajectory.structure().rods)
+      for (const int node : {rod.a, rod.b}) {
+        low = low.cwiseMin(q.segment<3>(3 * node));
+        high = high.cwiseMax(q.segment<3>(3 * node));
+      }
+    const double wide = (high - low).maxCoeff(), far = u->lpNorm<Eigen::Infinity>();
     if (far > most * wide) most = far / wide, at = trajectory.time(i), moved = far;
   }
   if (!(most > large)) return "";

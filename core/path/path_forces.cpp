@@ -209,12 +209,14 @@ VectorXd PathForces::first_angles() const {
 
 std::string PathForces::whose(Index column) const {
   const auto acts = [&](const Source& source) {
-    return source.turns_back && (source.position == column || source.damping == column);
+    return source.position == column || source.damping == column;
   };
   const auto found = std::ranges::find_if(sources_, acts);
-  return found == sources_.end() ? ""
-                                 : ": the angle that " + in_quotes(found->name) +
-                                       " acts on turns back where its sides lie in line; give it an axis";
+  // Where several act by one sum it may be any of them.
+  return std::ranges::count_if(sources_, acts) != 1 || !found->turns_back
+             ? ""
+             : ": the angle that " + in_quotes(found->name) +
+                   " acts on turns back where its sides lie in line; give it an axis";
 }
 
 void PathForces::evaluate(const VectorXd& q, const VectorXd& dq, VectorXd& angles, VectorXd& value,

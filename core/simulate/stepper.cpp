@@ -12,10 +12,12 @@
 #include "core/constraints/linear_rows.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/math/barycentric.hpp"
+#include "core/math/factors.hpp"
 #include "core/math/lagrange.hpp"
 #include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/run_words.hpp"
+#include "core/simulate/singular_poses.hpp"
 #include "core/simulate/stepper_loop.hpp"
 
 namespace unfurl {
@@ -53,12 +55,44 @@ bool is_unbounded(const std::array<VectorXd, 6>& lambda, std::size_t nearest, co
   return false;
 }
 
+// Which coordinates rows join to one that they leave free in a pose and hold in another.
+std::vector<bool> joined_to_weak(const System& system, const VectorXd& z, const VectorXd& other) {
+  constexpr double lost = 1e-5, own = 0.5, some = 1e-3;
+  SparseRows G = system.jacobian_pattern();
+  const auto free = [&](const VectorXd& at) {
+    VectorXd q(system.coordinates());
+    std::vector<double> scratch;
+    system.expand(at, q);
+    system.jacobian(q, G, scratch);
+    return column_complement(MatrixXd(G).rowwise().normalized().transpose(), lost);
+  };
+  const MatrixXd here = free(z), there = free(other);
+  const MatrixXd weak = column_space(here - there * (there.transpose() * here), own);
+  std::vector<bool> joined(static_cast<std::size_t>(z.size()));
+  for (Index i = 0; i < z.size(); ++i)
+    joined[static_cast<std::size_t>(i)] = weak.cols() > 0 && weak.row(i).cwiseAbs().maxCoeff() > some;
+  for (bool more = true; more;) {
+    more = false;
+    for (Index r = 0; r < G.rows(); ++r) {
+      bool any = false, all = true;
+      for (SparseRows::InnerIterator it(G, r); it; ++it) {
+        const bool is = joined[static_cast<std::size_t>(it.col())];
+        any = any || is, all = all && is;
+      }
+      if (!any || all) continue;
+      more = true;
+      for (SparseRows::InnerIterator it(G, r); it; ++it) joined[static_cast<std::size_t>(it.col())] = true;
+    }
+  }
+  return joined;
+}
+
 }  // namespace
 
-// A step that ends in a singular pose, as where its grid brings one: on the polynomial through the states of
-// shorter and longer ones, which rounding leaves their digits; of shorter ones alone where time has an edge.
-// The next step begins there as a run does. Where forces grow without bound towards the pose none can: it
-// stays a weak end.
+// A step that ends in a singular pose, as where its grid brings one: what rows join to its weak directions is
+// taken from the polynomial through the states of shorter and longer ones, which rounding leaves their
+// digits; of shorter ones alone where time has an edge. The next step begins there as a run does. Where
+// forces grow without bound towards the pose none can: it stays a weak end.
 void Stepper::Loop::settle_in_pose(Probe& to, double h) {
   constexpr std::size_t states = 6;
   constexpr double apart = 0.01;  // of the structure's size, at most, and of a step:
@@ -67,9 +101,10 @@ void Stepper::Loop::settle_in_pose(Probe& to, double h) {
   to.report.weak_end = false;
   const double way = fastest_way(to) / reference_length(base_->structure),
                share = std::min(share_apart, apart / way), edge = grid_.next_edge(now().t);
-  if (!(way > least) || to.state.tension.size() > 0 || to.state.stage_tension.size() > 0) return;
+  if (!(way > least) || std::max(system().constraints(), system().solved_coordinates()) > max_singular_size)
+    return;
   const auto integrator = fresh_integrator();
-  State out;
+  State out, beside;
   std::array<VectorXd, states> lambda;
   const auto gather = [&](const auto& length) {
     out = to.state;
@@ -83,11 +118,13 @@ void Stepper::Loop::settle_in_pose(Probe& to, double h) {
       out.z += weight * state.z;
       out.w += weight * state.w;
       out.lambda += weight * state.lambda;
-      lambda[k] = std::move(state.lambda);
+      lambda[k] = state.lambda;
+      if (k == 0) beside = std::move(state);
     }
     return true;
   };
   for (const double other : {1.0, 0.83, 0.91, 0.71, 0.59, 0.0}) {  // some may end where no step can
+    to.report.weak_end = other == 0;
     if (other == 0) return;
     const bool barred = edge < grid_.end() && now().t + (1 + 3 * other * share) * h > edge;
     const double d = other * (barred ? std::min(share, 0.5 * share_apart) : share);
@@ -99,8 +136,11 @@ void Stepper::Loop::settle_in_pose(Probe& to, double h) {
     if (to.report.weak_end) return;
     break;
   }
-  if (system().followed_angles() > 0) system().at(now()).count_on(out);
-  to.state = std::move(out);
+  const std::vector<bool> joined = joined_to_weak(system(), out.z, beside.z);
+  for (Index i = 0; i < out.z.size(); ++i)
+    if (joined[static_cast<std::size_t>(i)]) to.state.z[i] = out.z[i], to.state.w[i] = out.w[i];
+  to.state.lambda = std::move(out.lambda);
+  if (system().followed_angles() > 0) system().at(now()).count_on(to.state);
   integrator_->restart();
 }
 

@@ -87,7 +87,9 @@ class Search {
         give_up_at(end, "the measure is not there at an end of --between, " + short_number(end.x, 9));
       if (meets(end)) return void(a_ = b_ = end);
     }
-    if (!opposite(a_, b_)) give_up("the target does not lie between the ends of --between");
+    if (opposite(a_, b_)) return;
+    if (off(best_) <= last_digits * std::abs(target_)) return void(a_ = b_ = best_);
+    give_up("the target does not lie between the ends of --between");
   }
 
   // Outwards to both sides in turn. An invalid x is a wall that is approached by halving.

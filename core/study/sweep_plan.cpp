@@ -277,7 +277,7 @@ std::string unit_of_axis(const SweepPlan& plan, const SweepAxis& axis,
 }  // namespace
 
 void stand_on_a_point(SweepPlan& plan) {
-  constexpr std::size_t looked_at = 200;
+  constexpr std::size_t looked_at = 8;  // a mistake elsewhere in a large scene is to be told soon
   std::vector<std::vector<std::string>> some;
   for (std::size_t point = 0; point < plan.points(); point += plan.points() / looked_at + 1)
     some.push_back(plan.changes(point));
