@@ -134,4 +134,13 @@ Impacts strike_stops(const OneSided& sides, const std::vector<std::size_t>& side
   return Blows(sides, sides_of, crossed, responses, D, rests, state).run();
 }
 
+std::string what_pushes(const StopSide& at, const System& system, bool movable) {
+  const VectorXd mass = system.mass().diagonal();
+  const bool unlike = movable && mass.maxCoeff() > 1e8 * mass.minCoeff();
+  return (at.reeled ? "a drive pulls at the cable "
+          : unlike  ? "a drive or what weighs some 1e9 times as much pushes against the stop "
+                    : "a drive pushes against the stop ") +
+         at.name;
+}
+
 }  // namespace unfurl

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "core/simulate/one_sided.hpp"
@@ -25,5 +26,8 @@ struct Impacts {
 Impacts strike_stops(const OneSided& sides, const std::vector<std::size_t>& sides_of,
                      const std::vector<bool>& crossed, const PushResponses& responses, const MatrixXd& D,
                      const std::function<bool(std::size_t, double)>& rests, State& state);
+
+// "a drive pushes against the stop NAME": of a stop whose impact has no answer.
+std::string what_pushes(const StopSide& at, const System& system, bool movable);
 
 }  // namespace unfurl

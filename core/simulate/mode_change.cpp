@@ -71,7 +71,8 @@ class Change {
       if (!out_.impacts.empty() && turn_laws(sides_.laws_left(system_, out_.state))) acting.emplace(*this);
       if (!choose(acting->responses)) return std::move(out_);
       for (Index r = 0; r < count(); ++r)
-        if (series_ends(r)) ended.insert(side(r));
+        if (series_ends(r, solution_.w[r]) && series_ends(r, without_rates(acting->responses, r)))
+          ended.insert(side(r));
       if (ended.size() == known) break;
       out_.state.w = before;
       out_.impacts.clear();
@@ -105,20 +106,12 @@ class Change {
   bool movable(Index row) const { return movable_[static_cast<std::size_t>(row)]; }
   bool crossed(Index row) const { return std::find(which_.begin(), which_.end(), side(row)) != which_.end(); }
   Index count() const { return static_cast<Index>(rows_.size()); }
-
   ModeChange failed(const std::string& why) {
     out_.failure = why;
     return std::move(out_);
   }
   bool fail_at(Index row) {
-    const StopSide& at = sides_.stops()[side(row)];
-    const VectorXd mass = system_.mass().diagonal();
-    const bool unlike = movable(row) && mass.maxCoeff() > 1e8 * mass.minCoeff();
-    out_.failure = (at.reeled ? "a drive pulls at the cable "
-                    : unlike  ? "a drive or what weighs some 1e9 times as much pushes against the stop "
-                              : "a drive pushes against the stop ") +
-                   at.name;
-    return false;
+    return out_.failure = what_pushes(sides_.stops()[side(row)], system_, movable(row)), false;
   }
   void turn(std::size_t i, bool active) { sides_.set_active(i, active), tell(i); }
   void tell(std::size_t i) {
@@ -215,9 +208,16 @@ class Change {
     return sides_.is_stop(side(r)) && movable(r) && !rests_[static_cast<std::size_t>(r)] && rate_[r] > 0 &&
            solution_.w[r] < -zero_acceleration(r);
   }
-  bool series_ends(Index r) const {
+  bool series_ends(Index r, double acceleration) const {
     return struck_[static_cast<std::size_t>(r)] && is_pulled_back(r) &&
-           sides_.series_ends(side(r), rate_[r], -solution_.w[r]);
+           sides_.series_ends(side(r), rate_[r], -acceleration);
+  }
+  // What dampers take of a rate brings nothing back.
+  double without_rates(const PushResponses& responses, Index r) const {
+    State still = out_.state;
+    still.w.setZero();
+    const VectorXd b = responses.accelerations(base_.structure, still).value;
+    return b.size() == count() ? b[r] + D_.row(r).dot(solution_.x) : solution_.w[r];
   }
   // Crossed while it is left: a flight too short to be told, or of a crowd, within a step.
   bool is_no_flight(Index r) const {

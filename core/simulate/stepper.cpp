@@ -95,7 +95,7 @@ std::vector<bool> joined_to_weak(const System& system, const VectorXd& z, const 
 // forces grow without bound towards the pose none can: it stays a weak end.
 void Stepper::Loop::settle_in_pose(Probe& to, double h) {
   constexpr std::size_t states = 6;
-  constexpr double apart = 0.01;  // of the structure's size, at most, and of a step:
+  constexpr double apart = 0.004;  // of the structure's size, at most, and of a step:
   constexpr double share_apart = 0.3;
   constexpr double least = 1e-4;  // of the structure's size: what does not move is where it is
   to.report.weak_end = false;
