@@ -134,7 +134,7 @@ def test_a_stepper_ends_with_what_rods_stretch_and_with_the_warnings_of_the_star
     assert "B0" in stepped.x and "X0" not in stepped.x and 3 not in stepped.x
     # Velocities along a rod are taken away, and it is said.
     rod = unfurl.Scene(text="[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, "
-                            "{name = 'B', position = [1, 0, 0], mass = 1, velocity = [0.5, 1, 0]}]\nrods = [{nodes = ['A', 'B']}]\n"
+                            "{name = 'B', position = [1, 0, 0], mass = 1, velocity = [0.5, 1, 0]}]\nrods = [{nodes = ['A', 'B'], mass = 0}]\n"
                             "[solver]\nend_time = 0.1\n")
     stepper = rod.stepper()
     assert any("were projected" in said for said in stepper.warnings)
