@@ -2,6 +2,7 @@
 #include "core/integrators/dvm.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #include "core/forces/elastic_rods.hpp"
 #include "core/integrators/dvm_method.hpp"
@@ -368,12 +369,11 @@ void Dvm::settle_end() {
 // Does the step end so near to a singular pose that rounding tells its weak mode? Redundant rows look weak,
 // too, but do so at its start as well.
 bool Dvm::ends_weakly(StepReport& report) {
-  constexpr double bound = weak_pose * weak_pose;
-  const Index below = saddle_.rows_below(bound);
-  if (below <= never_weak_) return false;
-  const Index lost = saddle_.rows_below_finely(bound);
+  const Index before = std::exchange(weak_rows_, saddle_.rows_below(weak_pivot)), below = weak_rows_;
+  if (below <= std::max(before, never_weak_)) return false;
+  const Index lost = saddle_.rows_below_finely(weak_pivot);
   freeze(eq_.start_pose(), report);
-  const bool more = frozen_ && lost > saddle_.rows_below_finely(bound);
+  const bool more = frozen_ && lost > saddle_.rows_below_finely(weak_pivot);
   freeze(pose_, report);
   if (!more) never_weak_ = below;
   return more;

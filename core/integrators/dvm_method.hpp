@@ -58,6 +58,7 @@ class Dvm final : public Integrator {
     if (h != matrices_h_) set_matrices(h);
     predict(state, h);
     if (!frozen_) freeze(eq_.start_pose(), report);
+    if (weak_rows_ < 0) weak_rows_ = saddle_.rows_below(weak_pivot);
     if (stiff_) stiff_ = forces_are_stiff();
     tight_ = !stiff_ && !eq_.at_ends && needs_care();
     if (slow_ && !tight_ && !stiff_) freeze_in_the_middle(report);
@@ -75,6 +76,7 @@ class Dvm final : public Integrator {
   void restart() override {
     have_history_ = false;
     frozen_ = false;
+    weak_rows_ = -1;
     slow_ = stiff_ = false;
     settling_.restart();
     newton_.forget();
@@ -103,7 +105,7 @@ class Dvm final : public Integrator {
   static constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
   // Where a singular value sigma is a length of the pose, rounding leaves eps / sigma of it, and eps /
   // sigma^2 of a velocity that the constraints are asked for there.
-  static constexpr double weak_pose = 1e-6;
+  static constexpr double weak_pivot = 1e-6 * 1e-6;  // sigma^2
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr double most_prolonged = 4;  // steps of the last one's length
   static constexpr double unheld = 100;        // h omega of a rod, from above, whose velocity at ends is held
@@ -177,7 +179,8 @@ class Dvm final : public Integrator {
   double harmless_ = harmless;
   double needed_pivot_ = 0;  // of the weakest mode, for this step to do without care
   bool tight_ = false;       // this step is solved with care for weak modes
-  Index never_weak_ = 0;     // as many rows as may look weak and are none but redundant
+  Index weak_rows_ = -1;     // that look so at the start of the step; -1: not known
+  Index never_weak_ = 0;     // as many as may look so and are none but redundant
   CarriedSum carried_;
 };
 
