@@ -123,24 +123,34 @@ void Stepper::Loop::settle_in_pose(Probe& to, double h) {
     }
     return true;
   };
-  for (const double other : {1.0, 0.83, 0.91, 0.71, 0.59, 0.0}) {  // some may end where no step can
-    to.report.weak_end = other == 0;
-    if (other == 0) return;
-    const bool barred = edge < grid_.end() && now().t + (1 + 3 * other * share) * h > edge;
+  to.report.weak_end = true;
+  bool barred = false;
+  for (const double other : {1.0, 0.83, 0.91, 0.71, 0.59}) {  // some may end where no step can
+    barred = edge < grid_.end() && now().t + (1 + 3 * other * share) * h > edge;
     const double d = other * (barred ? std::min(share, 0.5 * share_apart) : share);
     const auto length = [&](std::size_t k) {
       return 1 + d * (static_cast<double>(k) - (barred ? 6 : k < states / 2 ? 3 : 2));
     };
     if (!gather(length)) continue;
     to.report.weak_end = is_unbounded(lambda, barred ? states - 1 : states / 2 - 1, length);
-    if (to.report.weak_end) return;
     break;
   }
+  if (to.report.weak_end) return;
   const std::vector<bool> joined = joined_to_weak(system(), out.z, beside.z);
+  State settled = to.state;
   for (Index i = 0; i < out.z.size(); ++i)
-    if (joined[static_cast<std::size_t>(i)]) to.state.z[i] = out.z[i], to.state.w[i] = out.w[i];
-  to.state.lambda = std::move(out.lambda);
-  if (system().followed_angles() > 0) system().at(now()).count_on(to.state);
+    if (joined[static_cast<std::size_t>(i)]) settled.z[i] = out.z[i], settled.w[i] = out.w[i];
+  settled.lambda = std::move(out.lambda);
+  if (system().followed_angles() > 0) system().at(now()).count_on(settled);
+  const auto step = [&](State& state, double length) { return integrator->step(state, length); };
+  State next = settled;
+  integrator->restart();
+  if (!step(next, h).ok() &&
+      !step_in_parts(*integrator, next, h, step).ok()) {  // as where a load begins there
+    to.report.weak_end = !barred;
+    return;
+  }
+  to.state = std::move(settled);
   integrator_->restart();
 }
 
