@@ -96,8 +96,11 @@ class SaddleSolver {
   bool factorise_safely();
   bool first_serves(bool held);
   double residual_norm(const double* r) const;
+  std::size_t place_of_row(Index r, const Factors& factors) const {
+    return static_cast<std::size_t>(factors.place[static_cast<std::size_t>(n_ + r)]);
+  }
   double pivot_of_row(Index r) const {
-    return std::abs(in_use_->ldlt.pivot(in_use_->place[static_cast<std::size_t>(n_ + r)]));
+    return std::abs(in_use_->ldlt.pivot(static_cast<Index>(place_of_row(r, *in_use_))));
   }
   static constexpr double most_growth = 1e7;
   static bool grown(double largest_pivot) { return !(largest_pivot < most_growth); }
@@ -125,7 +128,7 @@ class SaddleSolver {
   bool fine_ready_ = false;  // fine_ holds the present matrix
   Index redundant_ = 0;      // rows that depend on others, by the last fine factorisation
   double weakest_ = 1.0;     // the smallest pivot of the other rows, there
-  std::vector<double> pivots_;
+  std::vector<Index> by_pivot_;
 };
 
 }  // namespace unfurl

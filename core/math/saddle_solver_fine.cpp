@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 #include "core/math/saddle_solver.hpp"
@@ -11,10 +12,11 @@
 namespace unfurl {
 namespace {
 
-// e, and the pivot up to which a row counts as redundant: such rows have some e, tens of them where many
+// e, and the pivot up to which a row counts as redundant: such rows have some e, thousands of them where many
 // depend on each other, and the square of a singular value of 1e-11 where an error of 1e-14 in the
-// constraints over a weak direction of 1e-3 tells them apart.
-constexpr double fine_regularisation = 1e-23, redundant_pivot = 1e-20;
+// constraints over a weak direction of 1e-3 tells them apart. Up to `may_be_e` it is asked what e makes of
+// one.
+constexpr double fine_regularisation = 1e-23, redundant_pivot = 1e-20, may_be_e = 1e-14;
 // Pivots in doubles say something of a row where they are this many times e.
 constexpr double clear_of_regularisation = 1000;
 
@@ -47,9 +49,18 @@ struct SaddleSolver::Fine {
   Fine(const SparseLdlt& pattern, std::size_t size)
       : factors(pattern), shift(size, 0.0), right(size), x(size), r(size) {}
   TwofoldLdlt factors;
-  std::vector<double> shift;  // of the diagonal, from -e in doubles
+  std::vector<double> shift;       // of the diagonal, from -e in doubles
+  double e = fine_regularisation;  // what is left of it: that in doubles has its own last digit
   std::vector<Twofold> right, x, r;
   std::vector<TwofoldPair> rights, xs, rs;  // of two right-hand sides at once
+  // Of the row at this place of the order, without what e makes of it: all of it where the row is redundant.
+  double pivot_of_row(std::size_t place) const {
+    constexpr double round_off = 1e-6;
+    const double pivot = std::abs(factors.pivot(static_cast<Index>(place)));
+    if (!(pivot >= redundant_pivot && pivot < may_be_e)) return pivot;
+    const double left = pivot - e * factors.pivot_rate(place);
+    return left < round_off * pivot ? 0.0 : left;
+  }
   auto vectors(Twofold) { return std::tie(right, x, r); }
   auto vectors(TwofoldPair) {
     for (auto* v : {&rights, &xs, &rs}) v->resize(right.size());
@@ -70,11 +81,14 @@ double SaddleSolver::weakest_pivot(double bound) {
   for (Index r = 0; r < m_; ++r) below += pivot_of_row(r) < bound + 2 * regularisation_ ? 1 : 0;
   if (below <= redundant_) return bound;
   if (!fine_ready_) {
-    pivots_.resize(static_cast<std::size_t>(m_));
-    for (Index r = 0; r < m_; ++r) pivots_[static_cast<std::size_t>(r)] = pivot_of_row(r);
-    const auto next = pivots_.begin() + redundant_;
-    std::nth_element(pivots_.begin(), next, pivots_.end());
-    if (*next > clear_of_regularisation * regularisation_) return std::min(bound, *next);
+    by_pivot_.resize(static_cast<std::size_t>(m_));
+    std::iota(by_pivot_.begin(), by_pivot_.end(), Index{0});
+    const auto next = by_pivot_.begin() + redundant_;
+    std::ranges::nth_element(by_pivot_, next, {}, [this](Index r) { return pivot_of_row(r); });
+    const double pivot = pivot_of_row(*next);
+    if (pivot > clear_of_regularisation * regularisation_ &&
+        pivot > 2 * regularisation_ * in_use_->ldlt.pivot_rate(place_of_row(*next, *in_use_)))
+      return std::min(bound, pivot);
     if (!factorise_finely()) return 0.0;
     fine_ready_ = weakest_ <= clear_of_regularisation * regularisation_;
   }
@@ -90,27 +104,23 @@ Index SaddleSolver::rows_below(double bound) const {
 Index SaddleSolver::rows_below_finely(double bound) {
   Index below = 0;
   if (!factorise_finely()) return below;
-  for (Index r = 0; r < m_; ++r) {
-    const int place = safe_.place[static_cast<std::size_t>(n_ + r)];
-    below += std::abs(fine_->factors.pivot(static_cast<Index>(place))) < bound ? 1 : 0;
-  }
+  for (Index r = 0; r < m_; ++r) below += fine_->pivot_of_row(place_of_row(r, safe_)) < bound ? 1 : 0;
   fine_ready_ = weakest_ <= clear_of_regularisation * regularisation_;
   return below;
 }
 
 bool SaddleSolver::factorise_finely() {
-  const auto row_place = [this](Index r) {
-    return static_cast<std::size_t>(safe_.place[static_cast<std::size_t>(n_ + r)]);
-  };
   if (!fine_) {
     fine_.reset(new Fine(safe_.ldlt, static_cast<std::size_t>(n_ + m_)));
-    for (Index r = 0; r < m_; ++r) fine_->shift[row_place(r)] = regularisation_ - fine_regularisation;
+    for (Index r = 0; r < m_; ++r)
+      fine_->shift[place_of_row(r, safe_)] = regularisation_ - fine_regularisation;
+    fine_->e = regularisation_ - (regularisation_ - fine_regularisation);
   }
   fine_ready_ = fine_->factors.factorise(values_.data(), fine_->shift.data());
   redundant_ = 0;
   weakest_ = 1.0;
   for (Index r = 0; r < m_ && fine_ready_; ++r) {
-    const double pivot = std::abs(fine_->factors.pivot(static_cast<Index>(row_place(r))));
+    const double pivot = fine_->pivot_of_row(place_of_row(r, safe_));
     if (pivot < redundant_pivot)
       ++redundant_;
     else
@@ -179,9 +189,13 @@ void SaddleSolver::solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, 
     fine.r = fine.right;
     fine.factors.subtract_product(values_.data(), fine.x.data(), fine.r.data());
   };
-  const auto refine = [&](int passes) {
-    std::fill(fine.x.begin(), fine.x.end(), Twofold());
-    for (int pass = 0; pass < passes; ++pass) {
+  // Once where e is nothing beside the weakest direction, which leaves what round-off makes of redundant
+  // rows.
+  const int refinements = fine.e < 1e-9 * weakest_ ? 1 : 2;
+  const auto refine = [&] {
+    fine.x = fine.right;
+    fine.factors.solve_ordered(fine.x.data());
+    for (int pass = 0; pass < refinements; ++pass) {
       residual();
       for (Index i = 0; i < m_; ++i)
         fine.r[place(n_ + i)] = fine.r[place(n_ + i)] - Twofold(regularisation_) * fine.x[place(n_ + i)];
@@ -189,7 +203,7 @@ void SaddleSolver::solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, 
       for (std::size_t i = 0; i < fine.x.size(); ++i) fine.x[i] = fine.x[i] + fine.r[i];
     }
   };
-  refine(3);
+  refine();
   double last = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < most_passes; ++pass) {
     for (Index i = 0; i < m_; ++i) before[i] = static_cast<double>(fine.x[place(n_ + i)]);
@@ -197,7 +211,7 @@ void SaddleSolver::solve_finely(const ConstVec& f, const ConstVec& g, MutVec x, 
     residual();
     for (Index i = 0; i < m_; ++i)
       fine.right[place(n_ + i)] = fine.right[place(n_ + i)] - fine.r[place(n_ + i)];
-    refine(3);
+    refine();
     double size = 0, change = 0;
     for (Index i = 0; i < m_; ++i) {
       const auto now = static_cast<double>(fine.x[place(n_ + i)]);

@@ -37,12 +37,32 @@ class SparseLdlt {
   Index factor_nonzeros() const { return static_cast<Index>(row_index_.size()); }
   double largest_pivot() const;
   double pivot(Index k) const { return pivot_[static_cast<std::size_t>(k)]; }  // of the row eliminated k-th
+  // What the k-th pivot falls by where the diagonal of all rows whose pivots are negative falls by a small 1:
+  // the squares of the combination of rows that is left in it, u of L^T u = e_k.
+  double pivot_rate(std::size_t k) const {
+    return pivot_rate(
+        k, [this](std::size_t p) { return l_[p]; }, [this](std::size_t j) { return pivot_[j] < 0; });
+  }
 
  private:
   friend class TwofoldLdlt;
   friend class SaddleLanes;
   template <int R>
   void solve_fixed(double* b) const;
+  template <class Factor, class Falls>
+  double pivot_rate(std::size_t k, Factor l, Falls falls) const {
+    std::vector<double> u(k + 1, 0.0);
+    u[k] = 1.0;
+    double rate = falls(k) ? 1.0 : 0.0;
+    for (std::size_t j = k; j-- > 0;) {
+      for (auto p = static_cast<std::size_t>(column_start_[j]),
+                end = static_cast<std::size_t>(column_start_[j + 1]);
+           p < end; ++p)
+        if (const auto row = static_cast<std::size_t>(row_index_[p]); row <= k) u[j] -= l(p) * u[row];
+      if (falls(j)) rate += u[j] * u[j];
+    }
+    return rate;
+  }
 
   Index n_ = 0;
   std::vector<int> order_;         // position -> row

@@ -23,6 +23,11 @@ class TwofoldLdlt {
   void subtract_product(const double* values, const Twofold* x, Twofold* r) const;
   void subtract_product(const double* values, const TwofoldPair* x, TwofoldPair* r) const;
   double pivot(Index k) const { return pivot_[static_cast<std::size_t>(k)].hi; }  // k-th eliminated
+  // As SparseLdlt, in doubles.
+  double pivot_rate(std::size_t k) const {
+    return pattern_.pivot_rate(
+        k, [this](std::size_t p) { return l_[p].hi; }, [this](std::size_t r) { return pivot_[r].hi < 0; });
+  }
 
  private:
   template <bool fused>

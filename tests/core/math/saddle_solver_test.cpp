@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <random>
+#include <vector>
 
 #include "tests/support/sparse_rows.hpp"
 
@@ -212,6 +213,26 @@ TEST_CASE("doubles serve where no direction is weak, whatever is redundant") {
   CHECK(solver.weakest_pivot(1e-3) == 1e-3);  // none below
   REQUIRE(solver.factorise(sparse_rows(G)));
   CHECK(solver.weakest_pivot(0.9) == Approx(0.64).epsilon(1e-9));
+}
+
+// A closed loop of n rods in line, each row x_k - x_(k-1): the last row is minus the sum of the others, so
+// that e makes 1 + n times itself of its pivot, beyond what other redundant rows have. No pivot is smaller
+// than the square of the smallest singular value, 2 sin(pi / 2n) in rows of length sqrt(2).
+TEST_CASE("a row that follows from thousands of others is redundant and no weak direction") {
+  const int n = 4000;
+  std::vector<Eigen::Triplet<double>> entries, unit;
+  for (int k = 0; k < n; ++k) {
+    unit.emplace_back(k, k, 1.0);
+    entries.emplace_back(k, k, -1.0);
+    entries.emplace_back(k, (k + 1) % n, 1.0);
+  }
+  SparseRows M(n, n), G(n, n);
+  M.setFromTriplets(unit.begin(), unit.end());
+  G.setFromTriplets(entries.begin(), entries.end());
+  SaddleSolver solver(M, G);
+  REQUIRE(solver.factorise(G));
+  const double smallest = 2 * std::sin(1.5707963267948966 / n);
+  CHECK(solver.weakest_pivot(1e-4) >= 0.5 * smallest * smallest);
 }
 
 // e far below the last digit of the other terms: of the second row nothing is left, not even e.
