@@ -138,10 +138,19 @@ bool depends(const SparseRows& G, int row, const std::vector<int>& others) {
   return x.norm() <= left * std::max(1.0, y.norm());
 }
 
+// Among the rows of null vectors of G^T, which others have no part in: elimination in order fills a chain's.
 std::vector<int> dependent_rows(const SparseRows& G) {
-  return eliminate(G, VectorXd::Zero(G.rows()), dependent_row,
-                   [&](int row, const std::vector<int>& others) { return depends(G, row, others); })
-      .redundant;
+  const std::vector<char> by_itself = determined_rows(G);
+  std::vector<int> rows, dependent;
+  for (std::size_t r = 0; r < by_itself.size(); ++r)
+    if (!by_itself[r]) rows.push_back(static_cast<int>(r));
+  const SparseRows some = picked_rows(G, rows);
+  const auto follows = [&some](int row, const std::vector<int>& others) {
+    return depends(some, row, others);
+  };
+  for (const int row : eliminate(some, VectorXd::Zero(some.rows()), dependent_row, follows).redundant)
+    dependent.push_back(rows[static_cast<std::size_t>(row)]);
+  return dependent;
 }
 
 }  // namespace
