@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/forces/varying_loads.hpp"
 
+#include <array>
 #include <limits>
 
 namespace unfurl {
@@ -48,26 +49,32 @@ class Followers final : public ForceBlock {
       sum += load.size(at.t) * along(load, q).dot(node_vector(v, load.nodes[1]));
     return sum;
   }
-  // d/dx of the unit vector n of d: (I - n n^T) / |d|
+  // d/dx of the unit vector n of d = sum c_k x_k: (I - n n^T) c_k / |d|
   void derivatives(const Moment& at, const double* q, const double*, ForceDerivative& by_q,
                    ForceDerivative&) const override {
     for (const Force& load : loads_) {
-      const int a = load.nodes[0], b = load.nodes[1];
-      const Vec3 n = along(load, q);
-      const double length = (node_vector(q, b) - node_vector(q, a)).norm();
-      const Mat3 turn = load.size(at.t) / length * (Mat3::Identity() - n * n.transpose());
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          by_q.emplace_back(3 * b + i, 3 * b + j, turn(i, j));
-          by_q.emplace_back(3 * b + i, 3 * a + j, -turn(i, j));
-        }
+      const Vec3 d = line(load, q), n = d.normalized();
+      const Mat3 turn = load.size(at.t) / d.norm() * (Mat3::Identity() - n * n.transpose());
+      for (std::size_t k = 0; k < load.nodes.size(); ++k)
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j)
+            by_q.emplace_back(3 * load.nodes[1] + i, 3 * load.nodes[k] + j, share(load, k) * turn(i, j));
     }
   }
 
  private:
-  static Vec3 along(const Force& load, const double* q) {
-    return (node_vector(q, load.nodes[1]) - node_vector(q, load.nodes[0])).normalized();
+  // The line of the last part, and where a part is before it the tangent at the end of the parabola through
+  // the three nodes.
+  static double share(const Force& load, std::size_t k) {
+    constexpr std::array line{-1.0, 1.0, 0.0}, tangent{-2.0, 1.5, 0.5};
+    return load.nodes.size() == 3 ? tangent[k] : line[k];
   }
+  static Vec3 line(const Force& load, const double* q) {
+    Vec3 d = Vec3::Zero();
+    for (std::size_t k = 0; k < load.nodes.size(); ++k) d += share(load, k) * node_vector(q, load.nodes[k]);
+    return d;
+  }
+  static Vec3 along(const Force& load, const double* q) { return line(load, q).normalized(); }
   std::vector<Force> loads_;
 };
 

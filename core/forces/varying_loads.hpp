@@ -9,7 +9,8 @@ namespace unfurl {
 
 // Forces whose work is not a difference of potentials.
 //   load_over_time   F = size(t) direction on a node
-//   follower         F = size(t) d / |d| on the node at the rod's second end, d along the rod: turns with it
+//   follower         F = size(t) d / |d| on the node at the rod's second end, d along the rod: turns with it,
+//                    and is tangent to one that was cut to bend
 std::unique_ptr<ForceBlock> load_over_time_block(const Structure& structure, const SparseRows& node_mass);
 std::unique_ptr<ForceBlock> follower_block(const Structure& structure, const SparseRows& node_mass);
 const std::vector<ParamSpec>& load_over_time_params();

@@ -59,7 +59,8 @@ std::vector<Force> forces_on(const SceneElement& e, Members members, MemberFinde
       break;
     case Members::rod:
       if (const auto rod = find.rod(e, 0); rod.first) {
-        one.nodes = {rod.first->a, rod.last->b};
+        one.nodes = {rod.last->a, rod.last->b};
+        if (rod.first != rod.last) one.nodes.push_back((rod.last - 1)->a);
         forces.push_back(one);
       }
       break;
