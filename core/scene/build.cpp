@@ -114,8 +114,19 @@ std::vector<std::string> place_nodes(const Scene& scene, Structure& structure) {
   }
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
     structure.nodes[i].position = placed.nodes[i].position;
-  if (Deployment& d = structure.deployment; d.folds())
-    d.initial_fold_angle = d.fold_angle(node_positions(structure));
+  const VectorXd q = node_positions(structure);
+  for (Stop& stop : structure.stops)  // cables that families have
+    if (stop.reeled)
+      stop.reel.offset = MeasureFunction(stop.measure, structure.deployment).value(q.data(), 0);
+  if (Deployment& d = structure.deployment; d.folds()) {
+    const auto left = [&d] { return d.initial_fold_angle - d.deployed_fold_angle; };
+    const bool was_folded = left() > 0;
+    d.initial_fold_angle = d.fold_angle(q);
+    if (was_folded && !(left() > 0))
+      refuse(scene, {"fold_angle",
+                     "fold_angle is too near to the deployed pose: with the lengths that rods are "
+                     "made with the structure starts beyond it"});
+  }
   return placed.notes;
 }
 

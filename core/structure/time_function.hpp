@@ -33,6 +33,7 @@ struct TimeFunction {
   double operator()(double t) const { return derivative(0, t); }
   double derivative(int order, double t) const;  // order 0, 1, 2
   bool moves() const { return kind != Kind::constant; }
+  bool operator==(const TimeFunction&) const = default;
 };
 
 // Two points of a linear function nearer than this to each other become a jump between them, where the

@@ -2,6 +2,7 @@
 #include "core/structures/hoop_joints.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/structures/assembly.hpp"
@@ -93,6 +94,17 @@ bool loaded_alike(const Structure& s) {
   return true;
 }
 
+// Rods of one group have one length at any time.
+bool made_alike(const Structure& s) {
+  constexpr double round_off = 1e-12;
+  return std::ranges::all_of(s.rods, [&](const Rod& rod) {
+    const auto first = std::ranges::find(s.rods, rod.group, &Rod::group);
+    const auto same = [](double a, double b) { return std::abs(a - b) <= round_off * b; };
+    return same(rod.length, first->length) && same(rod.natural_length(), first->natural_length()) &&
+           rod.expansion == first->expansion && (rod.expansion == 0 || rod.warming == first->warming);
+  });
+}
+
 // Constraints that the ring has by itself, or that drive all its units as one.
 bool constrained_alike(const Structure& s) {
   const auto alike = [](const Constraint& c) {
@@ -108,8 +120,8 @@ bool constrained_alike(const Structure& s) {
 bool driven_evenly(const Structure& s) {
   const std::size_t n = s.nodes.size() / 4;
   const bool ring = s.kind == "hoop" && s.nodes.size() == 4 * n && s.rods.size() == 5 * n;  // no arc
-  return ring && s.forces.empty() && s.stops.empty() && s.gravity.x() == 0 && s.gravity.y() == 0 &&
-         constrained_alike(s) && loaded_alike(s);
+  return ring && made_alike(s) && s.forces.empty() && s.stops.empty() && s.gravity.x() == 0 &&
+         s.gravity.y() == 0 && constrained_alike(s) && loaded_alike(s);
 }
 
 double unevenness(const Structure& s, const ConstVec& q) {

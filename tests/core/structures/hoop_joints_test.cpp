@@ -163,6 +163,14 @@ units = 5
   CHECK_FALSE(even([](Structure& s) { s.gravity = Vec3(0.1, 0, -3); }));
   CHECK_FALSE(even([](Structure& s) { s.gravity = Vec3(0, 0.1, -3); }));
   CHECK_FALSE(even([](Structure& s) { s.kind = "custom"; }));
+  // One rod unlike the others of its group, made so or by its temperature.
+  CHECK_FALSE(even([](Structure& s) { s.rods.back().length *= 1 + 1e-6; }));
+  CHECK_FALSE(even([](Structure& s) { s.rods[7].free_length = s.rods[7].length * (1 - 1e-6); }));
+  const auto warm = [](Rod& rod, double change) { rod.expansion = 1e-5, rod.warming.offset = change; };
+  CHECK_FALSE(even([&](Structure& s) { warm(s.rods[7], 60); }));
+  CHECK(even([&](Structure& s) {
+    for (Rod& rod : s.rods) warm(rod, 60);
+  }));
   CHECK_FALSE(even([](Structure& s) { s.rods.pop_back(); }));
   CHECK_FALSE(even([](Structure& s) { s.nodes.pop_back(); }));
   const auto loaded = [&](const std::vector<Vec3>& forces) {  // on the same node of every unit
