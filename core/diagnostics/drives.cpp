@@ -13,11 +13,11 @@ namespace {
 
 constexpr double unknown_effort = std::numeric_limits<double>::quiet_NaN();
 
-// The row of a stop that is held: it has its name, behind the structure's own constraints.
+// The row of a stop that is held.
 int held_row(const Model& model, const std::string& name) {
   const auto& constraints = model.structure.constraints;
   for (std::size_t i = constraints.size(); i-- > 0;)
-    if (constraints[i].name == name && constraints[i].kind == "measure")
+    if (constraints[i].of_stop && constraints[i].name == name)
       return model.system.constraint_row(static_cast<int>(i));
   return -1;
 }
@@ -25,7 +25,7 @@ int held_row(const Model& model, const std::string& name) {
 }  // namespace
 
 int DriveChannel::row(const Model& model) const {
-  if (kind_ == Kind::reel) return held_row(model, name_);
+  if (kind_ == Kind::reel) return held_row(model, cable_);
   int row = -1;
   for (const Drive& d : model.system.drives())
     if (d.constraint == static_cast<int>(index_)) row = d.row;
@@ -72,7 +72,7 @@ double DriveChannel::work(const Model& model, double t, const VectorXd& lambda,
                           const std::function<double(const std::string&)>& of_reel) const {
   if (!by_row()) return 0.0;
   if (row(model) >= 0) return of_row(model, t, lambda).power;
-  return kind_ == Kind::reel ? of_reel(model.structure.stops[index_].name) : 0.0;
+  return kind_ == Kind::reel ? of_reel(cable_) : 0.0;
 }
 
 std::vector<DriveChannel> drive_channels(const Model& model) {
@@ -82,6 +82,7 @@ std::vector<DriveChannel> drive_channels(const Model& model) {
     DriveChannel channel;
     channel.kind_ = kind;
     channel.index_ = index;
+    if (kind == DriveChannel::Kind::reel) channel.cable_ = name;
     channel.name_ = name;  // a scene's names are unique in each of its tables, a program's need not be
     for (int number = 2; !taken.insert(channel.name_).second; ++number)
       channel.name_ = name + " (" + std::to_string(number) + ")";

@@ -20,7 +20,8 @@ struct DriveSample {
 
 class DriveChannel {
  public:
-  const std::string& name() const { return name_; }
+  const std::string& name() const { return name_; }    // unique
+  const std::string& cable() const { return cable_; }  // that is reeled, by its own name; empty: none is
   bool angle() const { return angle_; }
   // At the node coordinates and velocities of a time; lambda: multipliers of the model's rows.
   DriveSample sample(const Model& model, const System& system, double t, const VectorXd& q, const VectorXd& v,
@@ -39,7 +40,7 @@ class DriveChannel {
   DriveSample of_row(const Model& model, double t, const VectorXd& lambda) const;
 
   Kind kind_ = Kind::row;
-  std::string name_;
+  std::string name_, cable_;
   bool angle_ = false;
   std::size_t index_ = 0;  // of the constraint, stop or force
   double scale_ = 1.0;     // of a row

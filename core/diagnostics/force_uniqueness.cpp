@@ -231,7 +231,7 @@ void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness
             values_of(d, drive.name() + (drive.angle() ? ".torque_unique" : ".force_unique")))
       for (std::size_t i = 0; i < column->size(); ++i)
         (*column)[i] = drive.unique(trajectory.model(i), open[i] ? none : uniqueness.at(i)) &&
-                               uniqueness.unique_without_row(i, drive.name())
+                               uniqueness.unique_without_row(i, drive.cable())
                            ? 1.0
                            : 0.0;
 }

@@ -12,9 +12,7 @@ namespace unfurl {
 
 namespace {
 
-// The words of a line, up to a comment.
 std::vector<std::string_view> obj_words(std::string_view line) {
-  line = line.substr(0, line.find('#'));
   std::vector<std::string_view> words;
   constexpr std::string_view blank = " \t\r";
   for (std::size_t at = line.find_first_not_of(blank); at < line.size();
@@ -83,6 +81,7 @@ ImportedShape read_obj(const std::string& marked, const std::string& file) {
     at = end + 1;
     ++number;
     if (line.ends_with('\r')) line.remove_suffix(1);
+    line = line.substr(0, line.find('#'));  // a comment ends with its line, whatever its last letter
     const bool goes_on = line.ends_with('\\') && at < text.size();
     if (goes_on) line.remove_suffix(1);
     joined.append(line).append(1, ' ');

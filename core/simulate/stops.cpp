@@ -103,14 +103,15 @@ void Stops::hold(const std::set<std::size_t>& held, Structure& structure) const 
   for (const std::size_t i : held) {
     TimeFunction limit = stops_[i].reel;
     if (!stops_[i].reeled) limit.offset = stops_[i].limit;
-    structure.constraints.push_back({"measure", held_name(stops_[i]), {}, {}, 0.0, stops_[i].measure, limit});
+    structure.constraints.push_back(
+        {"measure", held_name(stops_[i]), {}, {}, 0.0, stops_[i].measure, limit, false, true});
   }
 }
 
 bool Stops::is_held(std::size_t i, const Structure& structure) const {
   const std::string name = held_name(stops_[i]);
   return std::ranges::any_of(structure.constraints,
-                             [&](const Constraint& c) { return c.kind == "measure" && c.name == name; });
+                             [&](const Constraint& c) { return c.of_stop && c.name == name; });
 }
 
 double Stops::push(std::size_t i, const Model& model, const std::set<std::size_t>& held,

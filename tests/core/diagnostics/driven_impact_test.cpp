@@ -183,6 +183,50 @@ end_time = 0.3
   CHECK(last(d, "rope.energy_J") == Approx(2 * (0.02 + 9.81 * 0.04)).epsilon(1e-9));
 }
 
+// A cable that lifts 2 kg by 0.35 m, beside a drive elsewhere whose name, in the other table, is as good.
+TEST_CASE("a reeled cable of the name of a drive has its own force and work") {
+  const std::string scene = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "D", position = [0, 0, 2], fixed = true}, {name = "B", position = [0, 0, 1], mass = 2},
+  {name = "C", position = [1, 0, 0], mass = 1}]
+[[constraints]]
+kind = "line"
+nodes = ["B", "C"]
+direction = [0, 0, 1]
+[[constraints]]
+kind = "coordinate"
+name = "hoist"
+nodes = ["C"]
+direction = [0, 0, 1]
+motion = "rate"
+rate = 0.3
+ramp = 0.1
+[[forces]]
+kind = "cable"
+name = "NAME"
+nodes = ["D", "B"]
+length = 1.0
+motion = "rate"
+rate = -0.5
+ramp = 0.4
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+step = 0.01
+end_time = 0.9
+)";
+  const auto named = [&](const std::string& name) {
+    return diagnose(testing::run_scene(std::string(scene).replace(scene.find("NAME"), 4, name)));
+  };
+  const Diagnostics own = named("rope"), same = named("hoist");
+  for (const char* column : {".value_m", ".force_N", ".power_W", ".energy_J", ".force_unique"})
+    CHECK(same.at(std::string("hoist (2)") + column).values == own.at(std::string("rope") + column).values);
+  CHECK(same.at("hoist.energy_J").values == own.at("hoist.energy_J").values);
+  // A ramp of 0.4 s and half a second: 0.35 m up, and the kinetic energy of 0.5 m/s.
+  CHECK(last(same, "hoist (2).energy_J") == Approx(2 * (9.81 * 0.35 + 0.125)).epsilon(1e-9));
+}
+
 // A beam and a ball among stops, cables and a drive: what each impact is told to lose is what the books have,
 // which work it out from the states before and behind it. Also where a stop goes on holding what it stops, at
 // a rate of rounding.

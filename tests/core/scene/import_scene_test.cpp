@@ -278,6 +278,11 @@ TEST_CASE("lines and faces of an OBJ file are rods and plates") {
   CHECK(mobility_of(lines.text).degrees_of_freedom == 2);
   CHECK(lines.notes == std::vector<std::string>{"1 vertices at which no rod ends are left out"});
   CHECK(run_scene(lines.text).trajectory.size() > 1);
+  // A comment ends with its line: that of a folder goes on nowhere.
+  const ImportedScene named =
+      imported("# C:\\models\\\n" + four.substr(four.find('v')) + "f 1 2 3 # C:\\\nl 3 4\n", "t.obj");
+  CHECK(model_of(named.text)->structure.rods.size() == 4);
+  CHECK(model_of(named.text)->structure.nodes.size() == 4);
 }
 
 TEST_CASE(
