@@ -245,7 +245,7 @@ class GltfWriter {
   void add_lines() {
     const double thick = shown_line_radius(structure_, motion_size());
     std::map<std::string, std::size_t> meshes;
-    for (const ShownLine& line : lines_with_springs(structure_)) {
+    for (const ShownLine& line : lines_between_nodes(structure_)) {
       if (!meshes.contains(line.group)) {
         meshes[line.group] = glb_.json["meshes"].size();
         const std::vector<double> tint = line.group == "cable" ? std::vector{0.579, 0.004, 0.036, 1.0}

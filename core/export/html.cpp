@@ -123,7 +123,7 @@ void add_members(const ExportJob& job, Page& page) {
 void add_lines(const ExportJob& job, Page& page) {
   const Structure& structure = job.run.trajectory.structure();
   page["lines"] = Page::array();
-  for (const ShownLine& line : lines_with_springs(structure))
+  for (const ShownLine& line : lines_between_nodes(structure))
     page["lines"].push_back({line.a, line.b, line.group});
   const VectorXd pose = job.run.trajectory.positions(0);
   const Eigen::Map<const Eigen::Matrix3Xd> at(pose.data(), 3, pose.size() / 3);

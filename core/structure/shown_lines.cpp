@@ -4,19 +4,73 @@
 #include <algorithm>
 
 namespace unfurl {
+namespace {
 
-std::vector<ShownLine> lines_with_springs(const Structure& structure) {
+// Two lengths that follow each other and of which one grows as the other does: stages.
+bool are_stages(const Constraint& constraint) {
+  const std::vector<MeasureTerm>& terms = constraint.measure.terms;
+  return terms.size() == 2 && terms[0].measure.kind == MeasureKind::length &&
+         terms[1].measure.kind == MeasureKind::length && terms[0].coefficient * terms[1].coefficient < 0 &&
+         terms[0].measure.nodes[1] == terms[1].measure.nodes[0];
+}
+
+}  // namespace
+
+std::vector<std::pair<int, int>> stretches(const Measure& path) {
+  std::vector<std::pair<int, int>> found;
+  const auto add = [&](const Measure& m) {
+    if (m.kind == MeasureKind::length) found.emplace_back(m.nodes[0], m.nodes[1]);
+  };
+  add(path);
+  for (const MeasureTerm& term : path.terms) add(term.measure);
+  return found;
+}
+
+std::vector<std::vector<int>> telescopes(const Structure& structure) {
+  std::vector<std::vector<int>> found;
+  const auto add_length = [&](const Measure& measure) {
+    const bool one = measure.kind == MeasureKind::combination && measure.terms.size() == 1;
+    const Measure& length = one ? measure.terms.front().measure : measure;
+    if (length.kind != MeasureKind::length) return;
+    const std::vector<int>& n = length.nodes;
+    const bool rod = std::ranges::any_of(structure.rods, [&](const Rod& r) {
+      return (r.a == n[0] && r.b == n[1]) || (r.a == n[1] && r.b == n[0]);
+    });
+    if (!rod) found.push_back({n[0], n[1]});
+  };
+  for (const Constraint& c : structure.constraints) {
+    if (c.kind != "measure") continue;
+    if (!are_stages(c)) {
+      add_length(c.measure);
+      continue;
+    }
+    const auto two = stretches(c.measure);
+    const bool goes_on = !found.empty() && found.back().back() == two[0].second &&
+                         found.back()[found.back().size() - 2] == two[0].first;
+    if (goes_on)
+      found.back().push_back(two[1].second);
+    else
+      found.push_back({two[0].first, two[0].second, two[1].second});
+  }
+  return found;
+}
+
+std::vector<ShownLine> lines_between_nodes(const Structure& structure) {
   std::vector<ShownLine> lines = structure.lines;
   const auto copy_of = [&](int node) {
     for (std::size_t i = 0; i < structure.node_copies.size(); ++i)
       if (structure.node_copies[i].source == node) return static_cast<int>(i);
     return -1;
   };
-  for (const Force& force : structure.forces) {
-    if (force.kind != "spring" || force.measure.kind != MeasureKind::length) continue;
-    const int a = copy_of(force.measure.nodes[0]), b = copy_of(force.measure.nodes[1]);
-    if (a >= 0 && b >= 0) lines.push_back({a, b, force.one_sided ? "cable" : "spring"});
-  }
+  const auto add = [&](int from, int to, const char* group) {
+    const int a = copy_of(from), b = copy_of(to);
+    if (a >= 0 && b >= 0) lines.push_back({a, b, group});
+  };
+  for (const Force& force : structure.forces)
+    if (force.kind == "spring" && force.measure.kind == MeasureKind::length)
+      add(force.measure.nodes[0], force.measure.nodes[1], force.one_sided ? "cable" : "spring");
+  for (const std::vector<int>& stages : telescopes(structure))
+    for (std::size_t k = 0; k + 1 < stages.size(); ++k) add(stages[k], stages[k + 1], "actuator");
   return lines;
 }
 

@@ -2,14 +2,23 @@
 // What is seen between nodes and is no rod.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "core/structure/structure.hpp"
 
 namespace unfurl {
 
-// Cables and nets, and springs between two nodes as straight lines of the group "spring".
-std::vector<ShownLine> lines_with_springs(const Structure& structure);
+// Solved nodes in a row [two or more each]: the ends of a telescope's stages, and of lengths that a motor or
+// a constraint drives or holds where no rod is.
+std::vector<std::vector<int>> telescopes(const Structure& structure);
+
+// The stretches of a path in order, as solved nodes; what a drum has drawn in has none.
+std::vector<std::pair<int, int>> stretches(const Measure& path);
+
+// Cables and nets, springs between two nodes as straight lines of the group "spring", and of "actuator" what
+// telescopes() has.
+std::vector<ShownLine> lines_between_nodes(const Structure& structure);
 
 // Thinner than any rod, and seen [m]: of cables and springs in pictures that others draw.
 double shown_line_radius(const Structure& structure, double size);

@@ -6,6 +6,7 @@
 
 #include "core/diagnostics/jacobian_spectrum.hpp"
 #include "core/diagnostics/rod_strength.hpp"
+#include "core/structure/shown_lines.hpp"
 #include "core/system/self_stress.hpp"
 #include "render/plot/figures/kinds.hpp"
 
@@ -23,6 +24,9 @@ bool has_moduli(const Simulation& run, const Diagnostics&) {
 }
 bool has_fold_angle(const Simulation&, const Diagnostics& d) {
   return d.find("fold_angle_rad") != nullptr;
+}
+bool has_members(const Simulation& run, const Diagnostics& d) {
+  return has_rods(run, d) || !lines_between_nodes(run.trajectory.structure()).empty();
 }
 bool has_drives(const Simulation&, const Diagnostics& d) {
   return std::any_of(d.columns.begin(), d.columns.end(),
@@ -65,7 +69,7 @@ constexpr std::array kinds{
                jacobian_figure},
     FigureKind{"self_stress", "forces that balance themselves: what a rigid model leaves open",
                has_self_stress, self_stress_figure},
-    FigureKind{"poses", "the configuration at six times", has_rods, poses_figure},
+    FigureKind{"poses", "the configuration at six times", has_members, poses_figure},
 };
 
 }  // namespace

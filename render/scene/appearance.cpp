@@ -83,7 +83,7 @@ void add_bare_nodes(const Structure& s, Appearance& looks) {
   }
   looks.bare.assign(s.node_copies.size(), false);
   const auto mark = [&](std::size_t i) { looks.bare[i] = looks.joint_radius[i] <= 0; };
-  for (const ShownLine& line : lines_with_springs(s))
+  for (const ShownLine& line : lines_between_nodes(s))
     for (const int end : {line.a, line.b}) mark(static_cast<std::size_t>(end));
   for (std::size_t i = 0; i < s.node_copies.size(); ++i)
     if (looks.fixed[i] || s.nodes[static_cast<std::size_t>(s.node_copies[i].source)].mass > 0) mark(i);

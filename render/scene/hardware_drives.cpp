@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/structure/shown_lines.hpp"
 #include "render/scene/hardware.hpp"
 
 namespace unfurl {
@@ -13,27 +14,6 @@ namespace {
 
 Vec3f single(const Vec3& v) {
   return v.cast<float>();
-}
-
-using Pair = std::pair<int, int>;  // solved nodes
-
-// The stretches of a path in order; what a drum has drawn in has none.
-std::vector<Pair> stretches(const Measure& measure) {
-  std::vector<Pair> found;
-  const auto add = [&](const Measure& m) {
-    if (m.kind == MeasureKind::length) found.emplace_back(m.nodes[0], m.nodes[1]);
-  };
-  add(measure);
-  for (const MeasureTerm& term : measure.terms) add(term.measure);
-  return found;
-}
-
-// Two lengths that follow each other and of which one grows as the other does: stages.
-bool are_stages(const Constraint& constraint) {
-  const std::vector<MeasureTerm>& terms = constraint.measure.terms;
-  return terms.size() == 2 && terms[0].measure.kind == MeasureKind::length &&
-         terms[1].measure.kind == MeasureKind::length && terms[0].coefficient * terms[1].coefficient < 0 &&
-         terms[0].measure.nodes[1] == terms[1].measure.nodes[0];
 }
 
 // Through what angle two rods turn against each other in a motion [rad].
@@ -61,9 +41,14 @@ int Hardware::copy(int node) const {
 void Hardware::find_drives(const Poses& poses) {
   const auto whole = std::ranges::count_if(structure_.nodes, [](const Node& n) { return !n.ghost; });
   solved_whole_ = static_cast<std::size_t>(whole) == structure_.node_copies.size();
-  if (!solved_whole_ || !detailed_) return;
+  if (!solved_whole_) return;
+  for (std::vector<int> stages : telescopes(structure_)) {
+    for (int& node : stages) node = copy(node);
+    telescopes_.push_back(std::move(stages));
+  }
+  if (!detailed_) return;
   const auto run_over = [&](const Measure& path) {
-    const std::vector<Pair> spans = stretches(path);
+    const auto spans = stretches(path);
     for (std::size_t k = 0; k + 1 < spans.size(); ++k) {
       const auto [a, b] = spans[k];
       const auto [c, d] = spans[k + 1];  // whichever way round each of them is
@@ -77,33 +62,15 @@ void Hardware::find_drives(const Poses& poses) {
   }
   for (const Stop& stop : structure_.stops)
     if (stop.reeled) run_over(stop.measure);
-  for (const Constraint& c : structure_.constraints) {
-    if (c.kind != "measure") continue;
-    if (are_stages(c)) {
-      const std::vector<Pair> two = stretches(c.measure);
-      const bool goes_on = !telescopes_.empty() && telescopes_.back().back() == copy(two[0].second) &&
-                           telescopes_.back()[telescopes_.back().size() - 2] == copy(two[0].first);
-      if (goes_on)
-        telescopes_.back().push_back(copy(two[1].second));
-      else
-        telescopes_.push_back({copy(two[0].first), copy(two[0].second), copy(two[1].second)});
-    } else {
-      add_drive(c.measure, poses);
-    }
-  }
+  for (const Constraint& c : structure_.constraints)
+    if (c.kind == "measure") add_drive(c.measure, poses);
 }
 
-// A length is driven by an actuator of two stages, an angle by a motor at its hinge.
+// An angle is driven by a motor at its hinge.
 void Hardware::add_drive(const Measure& measure, const Poses& poses) {
   const bool one = measure.kind == MeasureKind::combination && measure.terms.size() == 1;
   if (one) return add_drive(measure.terms.front().measure, poses);
   const std::vector<int>& n = measure.nodes;
-  if (measure.kind == MeasureKind::length) {
-    const bool rod = std::ranges::any_of(structure_.rods, [&](const Rod& r) {
-      return (r.a == n[0] && r.b == n[1]) || (r.a == n[1] && r.b == n[0]);
-    });
-    if (!rod) telescopes_.push_back({copy(n[0]), copy(n[1])});
-  }
   if (measure.kind == MeasureKind::angle && n[0] == n[2]) {
     motors_.push_back({{copy(n[1]), copy(n[0]), copy(n[3])}, measure.axis});
     if (measure.axis.isZero())
@@ -172,7 +139,8 @@ void Hardware::add_pulley(const Triple& nodes, const std::vector<Vec3>& at, Draw
   wheel(-0.62, 0.62, 0.34, look_.joint);
 }
 
-// Tubes that are the thinner the farther out they are, each with a collar where the next one leaves it.
+// Tubes that are the thinner the farther out they are, each with a collar where the next one leaves it; plain
+// ones where joints are plain.
 void Hardware::add_telescope(const std::vector<int>& nodes, const std::vector<Vec3>& at,
                              DrawList& list) const {
   const auto place = [&](std::size_t k) { return at[static_cast<std::size_t>(nodes[k])]; };
@@ -180,12 +148,14 @@ void Hardware::add_telescope(const std::vector<int>& nodes, const std::vector<Ve
   for (std::size_t k = 0; k < nodes.size(); ++k) ends.push_back(place(k));
   if (ends.size() == 2) ends.insert(ends.begin() + 1, 0.55 * ends[0] + 0.45 * ends[1]);
   const auto stages = static_cast<double>(ends.size() - 1);
+  const Finish finish = detailed_ ? Finish::anodised : Finish::paint;
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
     const Vec3 along = ends[k + 1] - ends[k];
     const double length = along.norm(), r = thickest() * (1.75 - 0.95 * static_cast<double>(k) / stages);
     if (length <= 0) continue;
     list.tubes.push_back(
-        {single(ends[k]), single(ends[k + 1]), static_cast<float>(r), look_.fitting, Finish::anodised});
+        {single(ends[k]), single(ends[k + 1]), static_cast<float>(r), look_.fitting, finish});
+    if (!detailed_) continue;
     const bool last = k + 2 == ends.size();
     const Vec3 collar = std::min(2.2 * r, 0.4 * length) / length * along;
     list.sleeves.push_back({single(ends[k + 1] - collar), single(ends[k + 1]),

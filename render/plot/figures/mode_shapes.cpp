@@ -37,7 +37,7 @@ class Shape {
   Shape(const Structure& structure, const PoseView& view)
       : structure_(structure),
         view_(view),
-        lines_(lines_with_springs(structure)),
+        lines_(lines_between_nodes(structure)),
         loose_(structure.node_copies.size(), true) {
     const double many =
         std::sqrt(60.0 / static_cast<double>(std::max<std::size_t>(structure.rod_copies.size(), 1)));

@@ -71,7 +71,7 @@ double bar_length(double width) {
 class PosePainter {
  public:
   PosePainter(const Structure& s, const PoseView& view)
-      : structure_(s), lines_(lines_with_springs(s)), view_(view), groups_(rod_groups(s)) {
+      : structure_(s), lines_(lines_between_nodes(s)), view_(view), groups_(rod_groups(s)) {
     const double many = std::sqrt(60.0 / static_cast<double>(std::max<std::size_t>(s.rod_copies.size(), 1)));
     width_ = static_cast<float>(std::clamp(1.3 * many, 0.4, 1.5));
     color_.assign(s.rods.size(), 0);
@@ -128,7 +128,7 @@ class PosePainter {
 
  private:
   static int line_color(const std::string& group) {  // about as pictures have them
-    return group == "spring" ? 7 : group == "net" ? 6 : 1;
+    return group == "spring" ? 7 : group == "net" ? 6 : group == "actuator" ? 4 : 1;
   }
 
   const Structure& structure_;

@@ -86,7 +86,7 @@ class StatePainter {
                                     : idle,
                             width, f});
     }
-    for (const ShownLine& line : lines_with_springs(structure_)) {
+    for (const ShownLine& line : lines_between_nodes(structure_)) {
       const Vec3 a = at(line.a), b = at(line.b);
       p.segments.push_back({a.x(), a.y(), b.x(), b.y(), (a.z() + b.z()) / 2 - 2 * behind(), idle, 0.4f});
     }

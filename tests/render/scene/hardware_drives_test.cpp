@@ -129,6 +129,24 @@ std::vector<Sleeve> housings(const DrawList& list) {
   return found;
 }
 
+// Where joints are balls, drives are plain: without wheels, collars and housings, and each between its nodes.
+TEST_CASE("line drawings and exports have telescopes and actuators too") {
+  const Scene scene = read_scene_text(machine, "machine.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  RenderOptions blueprint;
+  blueprint.look = "blueprint";
+  const DrawList list = FrameBuilder(run.trajectory, blueprint).build(0.35);
+  const VectorXd x = run.trajectory.positions_at(0.35);
+  const auto node = [&](int k) { return Vec3f(x.segment<3>(3 * k).cast<float>()); };
+  for (int k = 0; k < 3; ++k)
+    CHECK(std::ranges::count_if(list.tubes, [&](const Tube& tube) {
+            return same(tube.a, node(k)) && same(tube.b, node(k + 1));
+          }) == 1);
+  CHECK(std::ranges::count_if(list.tubes, [&](const Tube& u) { return same(u.a, node(10)); }) == 1);
+  CHECK(std::ranges::count_if(list.tubes, [&](const Tube& u) { return same(u.b, node(9)); }) >= 2);
+  CHECK(list.sleeves.empty());
+}
+
 TEST_CASE("a telescope of one stage is an actuator, however it is written") {
   const std::string one_stage = [] {
     std::string text = machine;
