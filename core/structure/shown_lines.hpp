@@ -9,8 +9,8 @@
 
 namespace unfurl {
 
-// Solved nodes in a row [two or more each]: the ends of a telescope's stages, and of lengths that a motor or
-// a constraint drives or holds where no rod is.
+// Solved nodes in a row [two or more each]: the ends of a telescope's stages, and of lengths that are driven
+// or held where no rod is.
 std::vector<std::vector<int>> telescopes(const Structure& structure);
 
 // The stretches of a path in order, as solved nodes; what a drum has drawn in has none.
