@@ -18,6 +18,9 @@ constexpr int poses = 400;       // at which margins are taken, at least
 constexpr long far_enough = 64;  // pieces of the path, to the deployed pose
 // What is left of forces across the path is rounding.
 constexpr double rounding = 1e-13;
+// Of what drives: next to a flat pose the path's own direction, and with it what acts across it, has some
+// more.
+constexpr double nothing = 1e-10;
 // A measure that changes by less, of what is left of it, over a piece of the path is stationary.
 constexpr double stationary = 1e-9;
 constexpr double same_end = 1e-8;  // of the way: the motion gets there
@@ -163,7 +166,7 @@ class MarginMaker {
     double drives = 0, resistances = 0;
     double sum() const { return drives + resistances; }
     double margin() const {
-      if (resistances <= rounding * drives) return drives > 0 ? infinite : 0.0;
+      if (resistances <= nothing * drives) return drives > 0 ? infinite : 0.0;
       return drives / resistances - 1;
     }
   };
@@ -283,7 +286,7 @@ class MarginMaker {
 }  // namespace
 
 double MarginReach::margin() const {
-  return resisted > rounding * driven ? driven / resisted - 1 : infinite;
+  return resisted > nothing * driven ? driven / resisted - 1 : infinite;
 }
 
 Margin margin_of(const std::shared_ptr<const Model>& model, const SolverOptions& options,

@@ -30,7 +30,7 @@ class Splitter {
   explicit Splitter(std::string_view text) : text_(text) {}
 
   bool next(Record& record) {
-    while (at_ < text_.size() && (text_[at_] == '\n' || text_[at_] == '\r' || text_[at_] == '#')) skip_line();
+    while (at_ < text_.size() && (text_[at_] == '#' || blank_line())) skip_line();
     if (at_ >= text_.size()) return false;
     record = {line_, {}, ""};
     do record.cells.push_back(cell(record.fault));
@@ -40,6 +40,9 @@ class Splitter {
   }
 
  private:
+  bool blank_line() const {
+    return trimmed(text_.substr(at_, std::min(text_.find_first_of("\r\n", at_), text_.size()) - at_)).empty();
+  }
   void skip_line() {
     while (at_ < text_.size() && text_[at_] != '\n') ++at_;
     if (at_ < text_.size()) ++at_;

@@ -49,6 +49,20 @@ double driven(double angle) {
 
 }  // namespace
 
+// Gravity along the axis of a ring does no work: half of it goes up as the other half goes down. What is left
+// of it next to the flat pose is rounding, and no resistance.
+TEST_CASE("weight that moves nothing leaves margins without bound") {
+  for (const char* hinge_force : {"26.6", "100", "200"})
+    for (const int units : {4, 6, 8}) {
+      CAPTURE(hinge_force, units);
+      const Margin margin = margin_in(read_scene_file(
+          find_scene("hoop6"),
+          {"structure.units=" + std::to_string(units), std::string("structure.hinge_force=") + hinge_force,
+           "structure.fold_angle=79.48", "gravity.acceleration=[0,0,-1.912]"}));
+      CHECK(margin.worst.margin == std::numeric_limits<double>::infinity());
+    }
+}
+
 TEST_CASE("static margins are the closed form's in every pose, by source") {
   const double k = 900;
   const Margin margin = margin_in(ring(k));

@@ -63,11 +63,12 @@ TEST_CASE("records of any cells are read as they were written") {
 TEST_CASE("rows of a table come with their place, their texts and their numbers") {
   SceneNotes notes;
   const auto rows = read_csv(
-      "\xEF\xBB\xBF# nodes\n\nfixed,x_m,name\ntrue,+1.5,A\n# one more\n0,-2e3,\"B\nb\"\n,0,C\nfalse,7,D",
+      "\xEF\xBB\xBF# nodes\n\nfixed,x_m,name\ntrue,+1.5,A\n# one more\n \t\n  "
+      "\r\n0,-2e3,\"B\nb\"\n,0,C\nfalse,7,D",
       "n.csv", columns, notes);
   CHECK(notes.problems.empty());
   REQUIRE(rows.size() == 4);
-  const int lines[] = {4, 6, 8, 9};
+  const int lines[] = {4, 8, 10, 11};
   const char* names[] = {"A", "B\nb", "C", "D"};
   const double x[] = {1.5, -2000, 0, 7}, fixed[] = {1, 0, -1, 0};
   for (std::size_t i = 0; i < 4; ++i) {
