@@ -36,7 +36,8 @@ void draw_controls(Ui& ui, PanelState& state, double start, double end) {
   ui.note("loop");
   ImGui::SameLine(0, ui.px(12));
   ImGui::SetNextItemWidth(ui.px(96));
-  const double slowest = 0.01, fastest = 100;
+  const double slowest = end > start ? std::min(0.01, (end - start) / 100) : 0.01,
+               fastest = std::max(100.0, (end - start) / 10);
   ImGui::SliderScalar("##speed", ImGuiDataType_Double, &playback.speed, &slowest, &fastest,
                       "speed \u00D7%.3g", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat);
   ui.note("speed");
@@ -111,7 +112,10 @@ void draw_timeline(Ui& ui, PanelState& state) {
   draw_controls(ui, state, start, end);
   ImGui::SameLine(0, ui.px(14));
   char text[64];
-  std::snprintf(text, sizeof text, "t = %.*f s", end - start < 0.5 ? 5 : 3, state.playback.t);
+  // As many decimals as tell a thousandth of the run, some more than its pictures have.
+  const double span = end - start, fine = span > 0 ? std::ceil(3 - std::log10(span)) : 3;
+  const int decimals = static_cast<int>(std::clamp(fine, span < 0.5 ? 5.0 : 3.0, 12.0));
+  std::snprintf(text, sizeof text, "t = %.*f s", decimals, state.playback.t);
   const float x = ImGui::GetCursorPosX();
   ImGui::PushFont(ui.bold);
   ImGui::AlignTextToFramePadding();

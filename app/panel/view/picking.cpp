@@ -46,7 +46,9 @@ Between between(const Trajectory& trajectory, double t) {
     (trajectory.time(middle) <= t ? low : high) = middle;
   }
   const double span = trajectory.time(high) - trajectory.time(low);
-  return {low, high, span > 0 ? std::clamp((t - trajectory.time(low)) / span, 0.0, 1.0) : 0.0};
+  const double share = span > 0 ? std::clamp((t - trajectory.time(low)) / span, 0.0, 1.0) : 0.0;
+  // At a state that one alone tells: what the other one has may not be known.
+  return {share == 1 ? high : low, share == 0 ? low : high, share};
 }
 
 std::string quantity(double x, const char* unit) {
@@ -80,11 +82,8 @@ std::vector<Reading> rod_readings(int index, const LiveRun& run, double t) {
 
 std::vector<Reading> node_readings(int index, const LiveRun& run, double t) {
   const Trajectory& trajectory = run.simulation.trajectory;
-  const auto at = between(trajectory, t);
-  const VectorXd whole = trajectory.positions_at(t);
-  const Vec3 v = (1 - at.share) * trajectory.velocities(at.i).segment<3>(3 * index) +
-                 at.share * trajectory.velocities(at.j).segment<3>(3 * index);
-  const Vec3 x = whole.segment<3>(3 * index);
+  const Vec3 v = trajectory.velocities_at(t).segment<3>(3 * index);
+  const Vec3 x = trajectory.positions_at(t).segment<3>(3 * index);
   return {{"speed", quantity(v.norm(), "m/s")},
           {"x", quantity(x.x(), "m")},
           {"y", quantity(x.y(), "m")},

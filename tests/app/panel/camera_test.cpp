@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <string>
+#include <vector>
 
 #include "app/panel/view/orbit_camera.hpp"
 #include "app/panel/view/picking.hpp"
@@ -159,6 +161,30 @@ TEST_CASE(
     CHECK((row.value == "0 m" || row.value.find("\u00D710\u207B\u00B9") != std::string::npos));
   }
   CHECK(has == !elastic);
+}
+
+// Half a turn a step: velocities at both ends are opposite.
+TEST_CASE("the speed of a node between states is that of the motion") {
+  LiveRun run{
+      .id = 1,
+      .document = {},
+      .scene = read_scene_text("[structure]\nkind = 'custom'\n"
+                               "[[structure.nodes]]\nname = 'P'\nposition = [0, 0, 0]\nfixed = true\n"
+                               "[[structure.nodes]]\nname = 'E'\nposition = [2, 0, 0]\nvelocity = [0, "
+                               "12.566370614359172, 0]\n"
+                               "[[structure.rods]]\nnodes = ['P', 'E']\nmass = 3\n"
+                               "[solver]\nstages = 8\nstep = 0.5\nend_time = 1\n",
+                               "spin.toml"),
+      .motion = {},
+      .simulation = simulate(build_model(run.scene), run.scene.solver),
+      .diagnostics = diagnose(run.simulation),
+      .warnings = {}};
+  for (const double t : {0.0, 0.13, 0.25, 0.5, 0.8}) {
+    CAPTURE(t);
+    const std::vector<Reading> rows = readings({Selection::Kind::node, "E"}, run, t);
+    REQUIRE(rows.front().label == "speed");
+    CHECK(std::stod(rows.front().value) == Approx(12.566370614).epsilon(1e-5));  // as six digits have it
+  }
 }
 
 }  // namespace camera_test
