@@ -6,11 +6,13 @@
 
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/peaks.hpp"
+#include "core/diagnostics/rod_peaks.hpp"
 #include "core/path/path_run.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/study/tolerance.hpp"
+#include "tests/support/number.hpp"
 
 using namespace unfurl;
 
@@ -128,6 +130,34 @@ TEST_CASE("between its states the path is as true as at them") {
       CHECK(apart(run, truth, std::min(c.until, truth.trajectory.end_time())) <= c.close);
     }
   }
+}
+
+// A motor with a rotor turns an arm that hangs on another one: in metres and kilograms, and with thousandths
+// of both. Forces are a millionth; the rotor's angle, in radians, has no part in it.
+TEST_CASE("peaks of mechanisms of millimetres are those of metres, with a rotor too") {
+  const auto peak = [](double scale) {
+    const auto in = [scale](double x, int power) { return testing::number(x * std::pow(scale, power)); };
+    const Scene scene = read_scene_text(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = [0, 0, 0], fixed = true}, "
+        "{name = 'A', position = [" +
+            in(0.8, 1) + ", 0, " + in(-0.3, 1) + "], mass = " + in(1.2, 1) + "}, {name = 'B', position = [" +
+            in(1.3, 1) + ", 0, " + in(0.4, 1) + "], mass = " + in(0.7, 1) +
+            "}]\nrods = [{nodes = ['O', 'A'], mass = " + in(0.9, 1) +
+            "}, {nodes = ['A', 'B'], mass = " + in(0.4, 1) +
+            "}]\n[[constraints]]\nkind = 'plane'\nnodes = ['*']\nnormal = [0, 1, 0]\n"
+            "[[forces]]\nkind = 'motor'\nnodes = ['O', 'A', 'B']\naxis = [0, 1, 0]\nstall_torque = " +
+            in(0.2, 3) + "\nno_load_speed = 300\ngear_ratio = 17\ninertia = " + in(1.5e-4, 3) +
+            "\n[gravity]\nacceleration = [0, 0, " + in(-9.81, 1) +
+            "]\n[solver]\nstages = 2\nstep = 0.05\nend_time = 1.5\n",
+        "arms.toml");
+    const Simulation run = simulate(build_model(scene), scene.solver);
+    REQUIRE(run.status == RunStatus::completed);
+    return peak_rod_force(run, diagnose(run));
+  };
+  const auto metres = peak(1), millimetres = peak(1e-3);
+  // As near as peaks are looked for: the motions themselves agree to rounding.
+  CHECK(millimetres.force_N == Approx(1e-6 * metres.force_N).epsilon(1e-9));
+  CHECK(millimetres.t == Approx(metres.t).epsilon(1e-6));
 }
 
 }  // namespace long_step_peaks_test
