@@ -118,19 +118,13 @@ std::string end_in_words(const Margin& margin) {
 
 Json sources_json(const Margin& margin) {
   Json sources = Json::array();
-  for (std::size_t k = 0; k < margin.sources.size(); ++k) {
-    double drive = 0, resistance = 0;
-    for (const MarginPoint& p : margin.points) {
-      drive = std::max(drive, p.forces[static_cast<Index>(k)]);
-      resistance = std::max(resistance, -p.forces[static_cast<Index>(k)]);
-    }
+  for (std::size_t k = 0; k < margin.sources.size(); ++k)
     sources.push_back({{"name", margin.sources[k].name},
                        {"kind", margin.sources[k].kind},
                        {"factor", margin.sources[k].factor},
-                       {"largest_drive", drive},
-                       {"largest_resistance", resistance},
+                       {"largest_drive", margin.sources[k].largest_drive},
+                       {"largest_resistance", margin.sources[k].largest_resistance},
                        {"at_worst", margin.worst.forces[static_cast<Index>(k)]}});
-  }
   return sources;
 }
 

@@ -217,18 +217,21 @@ class MarginMaker {
     return fades ? limit : here.margin();
   }
 
+  // Of source k, in the margin's unit.
+  double told_force(std::size_t k, double s, const Pose& at) const {
+    const Deployment& d = structure_.deployment;
+    const double by_angle = d.folds() ? 1 / std::abs(d.fold_rate(at.q, at.dq)) : 1.0;
+    return structure_.sectors * by_angle * force(k, s, time_at(s)).Q;
+  }
+
   MarginPoint point(double s) const {
     const Pose at = pose(s);
     const double t = time_at(s);
     MarginPoint out{s, std::numeric_limits<double>::quiet_NaN(), VectorXd(std::ssize(out_.sources)),
                     static_margin(s, t), t};
-    double by_angle = 1;
-    if (structure_.deployment.folds()) {
-      out.fold_angle = structure_.deployment.fold_angle(at.q);
-      by_angle = 1 / std::abs(structure_.deployment.fold_rate(at.q, at.dq));
-    }
+    if (structure_.deployment.folds()) out.fold_angle = structure_.deployment.fold_angle(at.q);
     for (std::size_t k = 0; k < out_.sources.size(); ++k)
-      out.forces[static_cast<Index>(k)] = structure_.sectors * by_angle * force(k, s, t).Q;
+      out.forces[static_cast<Index>(k)] = told_force(k, s, at);
     return out;
   }
 
@@ -245,9 +248,24 @@ class MarginMaker {
     return out;
   }
 
+  // The most that source k drives (sign 1) or resists (-1): around the pose where it is most.
+  double largest(std::size_t k, double sign) const {
+    const auto at = [&](const MarginPoint& p) { return sign * p.forces[static_cast<Index>(k)]; };
+    const auto most = std::ranges::max_element(out_.points, {}, at);
+    if (!(at(*most) > 0)) return 0.0;
+    const double a = most == out_.points.begin() ? most->s : (most - 1)->s;
+    const double b = most + 1 == out_.points.end() ? most->s : (most + 1)->s;
+    const auto force = [&](double s) { return sign * told_force(k, s, pose(s)); };
+    return std::max(at(*most), force(golden_section([&](double s) { return -force(s); }, a, b, 32)));
+  }
+
   void take_points() {
     out_.unit = structure_.deployment.folds() ? "N m" : "N/kg^1/2";
     for (const double s : places()) out_.points.push_back(point(s));
+    for (std::size_t k = 0; k < out_.sources.size(); ++k) {
+      out_.sources[k].largest_drive = largest(k, 1);
+      out_.sources[k].largest_resistance = largest(k, -1);
+    }
     const auto worst =
         std::min_element(out_.points.begin(), out_.points.end(), [](const auto& a, const auto& b) {
           // Where nothing drives, the strongest resistance.

@@ -26,6 +26,7 @@ namespace unfurl {
 struct MarginSource {
   std::string name, kind;
   double factor = 1.0;
+  double largest_drive = 0.0, largest_resistance = 0.0;  // on the way [Margin::unit]
 };
 
 struct MarginPoint {

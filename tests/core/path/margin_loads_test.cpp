@@ -205,4 +205,29 @@ deployed = 0.5)",
   CHECK(margin.loads[0].speed == Approx(rate(fallen) * arm).epsilon(1e-9));
 }
 
+// An arm of 3 kg at its end falls through the horizontal, where m g cos(angle) by the way of sqrt(m) is most:
+// at no pose that is looked at.
+TEST_CASE("the most that a source drives is that of the way, between poses too") {
+  const Margin margin = margin_in(read_scene_text(R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true},
+  {name = "A", position = [1.5320888862379562, 0, 1.2855752193730785], mass = 3}]
+rods = [{nodes = ["O", "A"], mass = 0}]
+[[constraints]]
+kind = "plane"
+nodes = ["A"]
+normal = [0, 1, 0]
+[deployment]
+measure = ["coordinate A along 0 0 1"]
+deployed = -1.1
+[gravity]
+acceleration = [0, 0, -9.81]
+)",
+                                                  "arm.toml"));
+  REQUIRE(margin.sources.size() == 1);
+  CHECK(margin.sources[0].largest_drive == Approx(9.81 * std::sqrt(3)).epsilon(1e-12));
+  CHECK(margin.sources[0].largest_resistance == 0);
+  for (const MarginPoint& p : margin.points) CHECK(p.forces[0] < margin.sources[0].largest_drive);
+}
+
 }  // namespace margin_loads_test
