@@ -121,32 +121,33 @@ class Change {
 
   void find_rows() {
     for (std::size_t i = 0; i < sides_.stops().size(); ++i)
-      if (std::find(which_.begin(), which_.end(), i) != which_.end() ||
-          sides_.touches(i, system_, out_.state))
+      if (std::ranges::find(which_, i) != which_.end() || sides_.touches(i, system_, out_.state))
         rows_.push_back(i);
     for (std::size_t i = sides_.first_friction(); i < sides_.first_motor(); ++i) rows_.push_back(i);
-    const auto n = rows_.size();
-    struck_.assign(n, false);
-    passes_.assign(n, false);
+    struck_ = passes_ = std::vector<bool>(rows_.size(), false);
   }
 
-  // Friction turns round where its rate u is zero, in a state that may miss the constraints by what the
-  // method drifts from them. Once they are met it is zero still, and what rested does, else friction would
-  // turn back there and stops be left.
+  // A state may miss the constraints by what the method drifts from them: what holds has no rate all the
+  // same, and friction turns round where its rate u is zero. Once they are met that is zero still, and what
+  // rested does, else friction would turn back there and stops be left.
   void settle(const PushResponses& responses) {
     const VectorXd u = responses.rates(out_.state.w);
     std::vector<bool> still(rows_.size(), false);
     std::vector<Index> rows;
+    const auto held = [&](Index r) { return !which_.empty() && sides_.active(side(r)); };
     const auto keep = [&](Index r) {
-      if (!movable(r) || !at_rest(r, u[r]) || !independent(D_, still, r)) return;
+      if (!movable(r) || !(held(r) || at_rest(r, u[r])) || !independent(D_, still, r)) return;
       still[static_cast<std::size_t>(r)] = true;
       rows.push_back(r);
     };
+    bool drifts = false, turns = false;
+    for (Index r = 0; r < count(); ++r) {
+      drifts = drifts || (held(r) && std::abs(u[r]) > sides_.zero_rate(side(r)));
+      if (sides_.is_friction(side(r)) && crossed(r)) keep(r), turns = !rows.empty();
+    }
+    if (!drifts && !turns) return;
     for (Index r = 0; r < count(); ++r)
-      if (sides_.is_friction(side(r)) && crossed(r)) keep(r);
-    if (rows.empty()) return;
-    for (Index r = 0; r < count(); ++r)
-      if (sides_.is_friction(side(r)) || sides_.active(side(r))) keep(r);
+      if (held(r) || (turns && sides_.is_friction(side(r)))) keep(r);
     out_.state = hand_over(base_, out_.state, base_).state;
     const VectorXd left = responses.rates(out_.state.w);
     std::erase_if(rows, [&](Index r) { return passes(r, left[r]); });
@@ -344,8 +345,8 @@ class Change {
   }
   bool come_back(Index r) {
     const std::size_t i = side(r), k = static_cast<std::size_t>(r);
-    const double sense = sides_.is_friction(i) ? slips_[k] : 1;
-    const double away = sense * solution_.w[r], zero = located_acceleration(r);
+    const double away = (sides_.is_friction(i) ? slips_[k] : 1) * solution_.w[r],
+                 zero = located_acceleration(r);
     const bool others_hold =
         sides_.is_friction(i) && std::abs(away) <= zero && !independent(D_, solution_.held, r);
     if (rests_[k] || (away >= -zero && !others_hold)) return false;
@@ -419,8 +420,7 @@ class Change {
         continue;
       }
       const int slip = slips_[k], before = sides_.slip(i);
-      const bool stuck = sides_.active(i);
-      if (holds == stuck && slip == before) continue;
+      if (holds == sides_.active(i) && slip == before) continue;
       if (holds)
         sides_.stick(i, system_, out_.state);
       else if (slip != 0)

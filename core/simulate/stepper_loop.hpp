@@ -229,7 +229,8 @@ class Stepper::Loop {
 
   // A drive's velocity jumps: what it drives is taken along by an impulse of the constraints.
   bool jump(double t) {
-    State before = now();
+    // What the method's rates drift from what is held is no leaving and no impact.
+    State before = sides_.any_active() ? hand_over(model(), now(), model()).state : now();
     drift(system(), before, t - before.t);
     before.t = t;
     if (sides_.empty()) return append_after_impulse(hand_over(model(), before, model()).state), true;
