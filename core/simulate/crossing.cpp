@@ -73,8 +73,8 @@ class CrossingSearch {
     if (known.empty()) return out;
     const double start = from_.margins[i], end = to.margins[i];
     const auto near_zero = [most](double bottom) { return bottom < 0.1 * most; };
-    if (start > 1 && from_.rates[i] < 0 && start <= between(i, known.front()) && near_zero(start))
-      out.push_back(-1);
+    const bool falls = start > 1 ? from_.rates[i] < 0 : from_.rates[i] * whole_ < -1;  // the latter at once
+    if (falls && start <= between(i, known.front()) && near_zero(start)) out.push_back(-1);
     for (std::size_t j = 0; j < known.size(); ++j) {
       const Index k = known[j];
       const double bottom = between(i, k);
@@ -116,7 +116,8 @@ class CrossingSearch {
       solve((a.at * rb - b.at * ra) / (rb - ra), i, p);
       const double r = p.rates[i];
       if (take(i, p)) return true;
-      if (!std::isfinite(r) || p.margins[i] - r * r / curvature > 1) break;
+      if (!std::isfinite(r)) return bottom_by_values(i, a, b);
+      if (p.margins[i] - r * r / curvature > 1) break;
       if (r < 0) {
         a = p, ra = r, rb *= 0.5;
       } else {

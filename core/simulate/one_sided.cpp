@@ -293,9 +293,10 @@ double OneSided::stretch(const Cable& cable, double t, const VectorXd& q, const 
   const double s = cable.length.value_and_gradient(q.data(), gradient_.data()) - law.rest;
   const double ds = cable.length.rate(gradient_.data(), v.data());
   const double stretching = ds - law.rest_rate;
-  rate = damping > 0 ? unknown : stretching;
   const double n = law.stiffness * s + damping * stretching;
-  return damping > 0 ? std::min(s, n / (law.stiffness + damping / step_)) : s;
+  const double by_force = damping > 0 ? n / (law.stiffness + damping / step_) : s;
+  rate = s <= by_force ? stretching : unknown;
+  return std::min(s, by_force);
 }
 
 // Of a cable or motor.

@@ -201,6 +201,22 @@ TEST_CASE("a margin that begins at zero crosses at once if it falls, and later i
   CHECK(found->which == Which{1});
 }
 
+TEST_CASE("a margin that begins at zero and is back within a part of the step has crossed at once") {
+  // Parts are 1/8 s; below zero until 0.05 s. Where it comes back its rate may not be known.
+  const auto value = [](double t) { return t * (t - 0.05); };
+  const Margin known{value, [](double t) { return 2 * t - 0.05; }};
+  const Margin at_ends{value, [](double t) {
+                         return t > 0 && t < 0.06 ? std::numeric_limits<double>::quiet_NaN() : 2 * t - 0.05;
+                       }};
+  for (const Margin& margin : {known, at_ends}) {
+    Motion motion{{margin}};
+    const auto found = motion.first();
+    REQUIRE(found);
+    CHECK(found->probe.at == 0);
+    CHECK(found->which == Which{0});
+  }
+}
+
 TEST_CASE("a margin that begins at zero with a rate of rounding alone and rises is not passed at once") {
   // Back at zero after 0.6 s; with the rate alone, by both ends, it were after 1e-20 s.
   Motion motion{{Margin{[](double t) { return t * t * (0.6 - t) + 1e-20 * t; },

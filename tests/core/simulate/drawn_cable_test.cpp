@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // When a damped cable that is drawn in or paid out begins and ceases to pull, against an integration of its
 // own.
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "core/study/table.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -91,6 +95,56 @@ TEST_CASE("a damped cable that is drawn in or paid out pulls from drawing taut u
     // Chords of 1e-5 s on a pull whose bend is some 1e5 of it: 1e-9 of a swing of 0.14 s.
     CHECK(events[1].t == Approx(truth.slack).margin(1e-9));
     CHECK(run.trajectory.velocities_at(events[1].t)[3] == Approx(truth.velocity).epsilon(1e-6));
+  }
+}
+
+// 1 kg that moves away at v from where its cable is just straight, and is pushed back by F: it pulls from the
+// start until s = 0 once more (with damping until the force is zero), and is then free. Steps are longer than
+// that by far.
+TEST_CASE("a cable that is just straight at the start pulls from there on however long steps are") {
+  struct Start {
+    double stiffness, damping, speed, push, end;
+  };
+  for (const Start& c : {Start{2000, 0, 0.2, 20, 0.2}, {2000, 100, 1, 100, 0.2}, {5e4, 0, 1, 200, 0.05}}) {
+    // s'' = -F - k s - c s' by steps of Runge's and Kutta's formula, until the tension is zero.
+    double s = 0, u = c.speed, t = 0;
+    const auto tension = [&](double x, double v) { return c.stiffness * x + c.damping * v; };
+    const auto pulled = [&](double h) {
+      const auto a = [&](double x, double v) { return -c.push - tension(x, v); };
+      const double a1 = a(s, u), u2 = u + h / 2 * a1, a2 = a(s + h / 2 * u, u2), u3 = u + h / 2 * a2,
+                   a3 = a(s + h / 2 * u2, u3), u4 = u + h * a3, a4 = a(s + h * u3, u4);
+      return std::pair{s + h / 6 * (u + 2 * u2 + 2 * u3 + u4), u + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)};
+    };
+    for (double h = 1e-6; h > 1e-15;) {
+      const auto [s1, u1] = pulled(h);
+      if (tension(s1, u1) > 0)
+        s = s1, u = u1, t += h;
+      else
+        h /= 2;
+    }
+    const double left = c.end - t, exact = 1 + s + u * left - c.push / 2 * left * left;
+    for (const int stages : {5, 8})
+      for (const double share : {1.0, 0.5, 0.25}) {
+        CAPTURE(c.stiffness, c.damping, stages, share, t, exact);
+        const Simulation run = run_scene(
+            "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = [0, 0, 0], fixed = true}, {name "
+            "= "
+            "'B', position = [1, 0, 0], mass = 1, velocity = [" +
+            number(c.speed) +
+            ", 0, 0]}]\n[[constraints]]\nkind = 'line'\nnodes = ['B']\ndirection = [1, 0, "
+            "0]\n[[loads]]\nnodes = "
+            "['B']\nforce = [" +
+            number(-c.push) +
+            ", 0, 0]\n[[forces]]\nkind = 'cable'\nname = 'c'\nnodes = ['O', "
+            "'B']\naxial_stiffness = " +
+            number(c.stiffness) + "\ndamping = " + number(c.damping) +
+            "\n[solver]\nend_time = " + number(c.end) + "\nstep = " + number(share * c.end) +
+            "\nstages = " + std::to_string(stages) + "\n");
+        REQUIRE(run.status == RunStatus::completed);
+        // The pull lasts some 1 / omega, h omega of it up to 0.5: five stages are of order 8.
+        CHECK(end_positions(run)[3] == Approx(exact).margin(1e-7));
+        CHECK(std::ranges::count(run.events, "slack", &Event::kind) == 1);
+      }
   }
 }
 
