@@ -61,7 +61,8 @@ class KeySearch {
 
  private:
   void lay_first() {
-    const auto count = static_cast<long>(std::max(std::ceil(length_ / interval_ - 1e-9), 1.0));
+    // What is left behind the last one is at least as long as two keys are apart, or belongs to it.
+    const auto count = static_cast<long>(std::max(std::ceil((1 - closest) * length_ / interval_), 1.0));
     VectorXd before = run_.positions_at(run_.start_time());
     Vec3 low = Vec3::Constant(1e300), high = -low;
     for (long i = 1; i <= count; ++i) {

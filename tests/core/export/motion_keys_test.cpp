@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -86,6 +87,22 @@ TEST_CASE("what rests has its start and its end") {
   const MotionKeys keys = motion_keys(run.trajectory, 0.25, 20000);
   CHECK(keys.times.size() == 5);
   CHECK(keys.off == 0);
+}
+
+TEST_CASE("keys are at different times in single precision wherever the run ends") {
+  // glTF asks for it. A multiple of the frames' interval, and what rounding or somebody's last digit adds.
+  for (const double more : {0.0, 1e-15, 1e-12, 3e-10, 1e-8, 1e-7, 1e-6, 1e-5, -1e-9})
+    for (const double frames : {1.0, 15.0, 120.0}) {
+      const std::string end = "solver.end_time=" + number(frames / 30 * (1 + more));
+      INFO(end);
+      const Simulation run = run_scene(spun(0, 1, 0.01), {end});
+      const MotionKeys keys = motion_keys(run.trajectory, 1.0 / 30, 20000);
+      CHECK(keys.times.back() == run.trajectory.end_time());
+      for (std::size_t k = 1; k < keys.times.size(); ++k) {
+        CHECK(static_cast<float>(keys.times[k - 1]) < static_cast<float>(keys.times[k]));
+        CHECK(keys.times[k] - keys.times[k - 1] < 1.001 / 30);
+      }
+    }
 }
 
 }  // namespace motion_keys_test
