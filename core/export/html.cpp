@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/diagnostics/force_round_off.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/rod_peaks.hpp"
@@ -17,6 +19,7 @@
 #include "core/export/motion_keys.hpp"
 #include "core/math/drawing_origin.hpp"
 #include "core/math/largest.hpp"
+#include "core/math/magnitudes.hpp"
 #include "core/structure/seams.hpp"
 #include "core/structure/shown_lines.hpp"
 #include "core/structure/upright.hpp"
@@ -33,7 +36,9 @@ namespace {
 using Page = nlohmann::ordered_json;
 
 constexpr std::size_t most_poses = 20'000, most_numbers = 12'000'000;  // 48 MB in single precision
-constexpr std::size_t most_points = 1500, parts_of_curves = 300;       // of curves
+constexpr std::size_t most_of_forces = 1500;                           // poses that are there for them alone
+constexpr double force_share = 0.02;  // what they may be off by, of those that have full colours
+constexpr std::size_t most_points = 1500, parts_of_curves = 300;  // of curves
 
 std::string packed(const auto& values) {
   return base64(std::as_bytes(std::span(values)));
@@ -51,10 +56,24 @@ std::size_t bearable_poses(const Structure& structure) {
   return std::clamp<std::size_t>(most_numbers / std::max<std::size_t>(numbers, 1), 2, most_poses);
 }
 
+// Of rods that are shown; what is rounding alone is none.
+MatrixXd shown_forces(const ExportJob& job) {
+  MatrixXd forces = without_round_off(job.run, job.diagnostics, job.diagnostics.axial_force);
+  for (Index r = 0; r < forces.cols(); ++r)
+    if (!job.diagnostics.shows(r)) forces.col(r).setConstant(std::numeric_limits<double>::quiet_NaN());
+  return forces;
+}
+
 void add_motion(const ExportJob& job, Page& page) {
   const Trajectory& trajectory = job.run.trajectory;
   const Structure& structure = trajectory.structure();
-  const MotionKeys keys = motion_keys(trajectory, job.frame_interval, bearable_poses(structure));
+  const std::size_t most = bearable_poses(structure);
+  MotionKeys keys = motion_keys(trajectory, job.frame_interval, most);
+  const MatrixXd known = shown_forces(job);
+  const Magnitudes size = magnitudes(known);
+  const double bearable = force_share * size.usual;
+  const double off =
+      add_value_keys(trajectory, known, bearable, std::min(most, keys.times.size() + most_of_forces), keys);
   Vec3 low = Vec3::Constant(1e300), high = -low;
   for (const VectorXd& pose : keys.poses)
     for (Index n = 0; n < pose.size() / 3; ++n) {
@@ -68,21 +87,8 @@ void add_motion(const ExportJob& job, Page& page) {
     for (Index n = 0; n < keys.poses[k].size() / 3; ++n)
       for (const double x : Vec3(upright * (keys.poses[k].segment<3>(3 * n) - origin)))
         positions.push_back(static_cast<float>(x));
-    // Between two states a force goes along a straight line; next to one at which it is not known it stays.
-    const double t = keys.times[k];
-    const std::size_t i = trajectory.state_before(t), next = std::min(i + 1, trajectory.size() - 1);
-    const double gap = trajectory.time(next) - trajectory.time(i),
-                 u = gap > 0 ? (t - trajectory.time(i)) / gap : 0;
-    for (const RodCopy& rod : structure.rod_copies) {
-      const auto force = [&](std::size_t at) {
-        return job.diagnostics.axial_force(static_cast<Index>(at), rod.source);
-      };
-      const double before = force(i), after = force(next);
-      const bool between = u > 0 && std::isfinite(after);
-      forces.push_back(static_cast<float>(between && std::isfinite(before) ? (1 - u) * before + u * after
-                                          : between                        ? after
-                                                                           : before));
-    }
+    const VectorXd force = values_at(trajectory, known, keys.times[k]);
+    for (const RodCopy& rod : structure.rod_copies) forces.push_back(static_cast<float>(force[rod.source]));
   }
   page["start"] = trajectory.start_time();
   page["end"] = trajectory.end_time();
@@ -93,7 +99,15 @@ void add_motion(const ExportJob& job, Page& page) {
   for (const double x : upright.reshaped()) page["upright"].push_back(x);  // by columns
   page["positions"] = packed(positions);
   page["forces"] = packed(forces);
-  if (const std::string warning = too_few_keys(keys, "viewer.html"); !warning.empty()) {
+  page["largest_force"] = size.most;
+  page["full_force"] = size.usual;
+  std::vector<std::string> warnings{too_few_keys(keys, "viewer.html")};
+  if (off > bearable)
+    warnings.push_back("viewer.html has " + std::to_string(keys.times.size()) +
+                       " poses, too few for the rod forces: between two of them it shows some up to " +
+                       short_text(off) + " N off, which rod_forces.csv has");
+  for (const std::string& warning : warnings) {
+    if (warning.empty()) continue;
     page["warnings"].push_back(warning);
     if (job.said) job.said->push_back(warning);
   }

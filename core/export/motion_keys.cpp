@@ -135,11 +135,67 @@ class KeySearch {
   std::priority_queue<Span> spans_;
 };
 
+// Between two keys the state at which straight lines are worst.
+struct Gap {
+  double a = 0, b = 0, off = 0;
+  std::size_t worst = 0;
+  bool operator<(const Gap& other) const { return off < other.off; }
+};
+
+double between(double a, double b, double u) {
+  if (u <= 0 || (std::isnan(b) && u < 1)) return a;
+  return u >= 1 || std::isnan(a) ? b : (1 - u) * a + u * b;
+}
+
+Gap gap_between(const Trajectory& run, const MatrixXd& values, double a, double b) {
+  Gap gap{a, b};
+  const VectorXd from = values_at(run, values, a), to = values_at(run, values, b);
+  const std::size_t first = run.state_before(a) + 1, end = run.state_before(b) + 1;
+  for (Index r = 0; r < values.cols(); ++r)
+    for (std::size_t i = first; i < end && run.time(i) < b; ++i) {
+      const double line = between(from[r], to[r], (run.time(i) - a) / (b - a)),
+                   off = std::abs(values(static_cast<Index>(i), r) - line);
+      if (off > gap.off) gap.off = off, gap.worst = i;
+    }
+  return gap;
+}
+
 }  // namespace
 
 MotionKeys motion_keys(const Trajectory& run, double interval, std::size_t most) {
   if (!(run.end_time() > run.start_time())) return {{run.end_time()}, {run.positions_at(run.end_time())}, 0};
   return KeySearch(run, interval, most).search();
+}
+
+VectorXd values_at(const Trajectory& run, const MatrixXd& values, double t) {
+  const std::size_t i = run.state_before(t), next = std::min(i + 1, run.size() - 1);
+  const double gap = run.time(next) - run.time(i), u = gap > 0 ? (t - run.time(i)) / gap : 0;
+  VectorXd out(values.cols());
+  for (Index r = 0; r < out.size(); ++r)
+    out[r] = between(values(static_cast<Index>(i), r), values(static_cast<Index>(next), r), u);
+  return out;
+}
+
+double add_value_keys(const Trajectory& run, const MatrixXd& values, double bearable, std::size_t most,
+                      MotionKeys& keys) {
+  std::priority_queue<Gap> gaps;
+  for (std::size_t k = 1; k < keys.times.size(); ++k)
+    gaps.push(gap_between(run, values, keys.times[k - 1], keys.times[k]));
+  std::vector<double> times = keys.times;
+  while (!gaps.empty() && gaps.top().off > bearable && times.size() < most) {
+    const Gap gap = gaps.top();
+    gaps.pop();
+    times.push_back(run.time(gap.worst));
+    gaps.push(gap_between(run, values, gap.a, times.back()));
+    gaps.push(gap_between(run, values, times.back(), gap.b));
+  }
+  std::ranges::sort(times);
+  std::vector<VectorXd> poses;
+  std::size_t old = 0;
+  for (const double t : times)
+    poses.push_back(t == keys.times[old] ? std::move(keys.poses[old++]) : run.positions_at(t));
+  keys.times = std::move(times), keys.poses = std::move(poses);
+  return gaps.empty() ? 0 : gaps.top().off;
 }
 
 std::string too_few_keys(const MotionKeys& keys, std::string_view file) {

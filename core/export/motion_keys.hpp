@@ -22,6 +22,15 @@ struct MotionKeys {
 // backwards. No more than `most`, those where they matter most.
 MotionKeys motion_keys(const Trajectory& run, double interval, std::size_t most);
 
+// Of each column of values at the states [states x columns], at any time: along straight lines; up to a state
+// at which it is not known, and from there on, it is what is known next to it.
+VectorXd values_at(const Trajectory& run, const MatrixXd& values, double t);
+
+// Keys at states, where straight lines between the keys would leave values at the states by more than
+// `bearable`: those where they do so most, until there are `most` keys. Returns what they are off by at most.
+double add_value_keys(const Trajectory& run, const MatrixXd& values, double bearable, std::size_t most,
+                      MotionKeys& keys);
+
 // What a file says whose keys are too few; empty where they are enough.
 std::string too_few_keys(const MotionKeys& keys, std::string_view file);
 

@@ -10,12 +10,12 @@
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/length_error.hpp"
 #include "core/diagnostics/rod_strength.hpp"
+#include "core/math/magnitudes.hpp"
 #include "render/scene/color_map.hpp"
 
 namespace unfurl {
 namespace {
 
-constexpr double typical = 0.98;  // share of all values that the colours must tell apart
 constexpr double round_off = 1e-17;
 
 // The smallest of 1, 2, 5, 10, ... (any power of ten) that is not below x > 0.
@@ -24,17 +24,6 @@ double rounded_up(double x) {
   for (const double step : {1.0, 2.0, 5.0})
     if (step * power >= x * (1 - 1e-9)) return step * power;
   return 10 * power;
-}
-
-// The value that so large a share of the finite magnitudes lies below; 0 where there are none.
-double quantile(const MatrixXd& values, double share) {
-  std::vector<double> all;
-  for (Index i = 0; i < values.size(); ++i)
-    if (std::isfinite(values.data()[i])) all.push_back(std::abs(values.data()[i]));
-  if (all.empty()) return 0;
-  const auto at = all.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(all.size() - 1));
-  std::nth_element(all.begin(), at, all.end());
-  return *at;
 }
 
 template <class Value>  // of the nodes' positions, their velocities, a rod and the time
@@ -64,13 +53,11 @@ double size_of_length_error(const VectorXd& q, const VectorXd&, const Rod& rod, 
   return std::abs(length_error(rod, q, t));
 }
 
-// The run's own range. Forces blow up for an instant where a mechanism is straight: what is rare saturates.
+// The run's own range.
 void choose_range(RodField& field) {
-  const double most = quantile(field.values, 1.0), usual = quantile(field.values, typical);
+  const auto [most, usual] = magnitudes(field.values);
   // Of nothing but zeros, or of nothing at all, any range will do.
-  const double high = most > std::numeric_limits<double>::min() * 1e20
-                          ? rounded_up(most > 2 * usual && usual > 0 ? usual : most)
-                          : 1.0;
+  const double high = most > std::numeric_limits<double>::min() * 1e20 ? rounded_up(usual) : 1.0;
   field.high =
       field.log ? std::max(std::pow(10.0, std::ceil(std::log10(std::max(most, 1e-16)))), 1e-15) : high;
   field.low = field.diverging ? -field.high : field.log ? 1e-4 * field.high : 0;

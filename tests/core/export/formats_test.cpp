@@ -228,6 +228,40 @@ TEST_CASE("a page keeps a peak of one state among many, and no warning that name
   CHECK(data["warnings"][0] == "the run's own");
 }
 
+TEST_CASE("forces in a page are those of the run however briefly they last") {
+  // A kilonewton for 5 ms along a rod that hangs at rest, 3 kg at its end: the rod bears m g and the pulse.
+  const Simulation run = run_scene(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', "
+      "position = [0, 0, -1], mass = 3}]\nrods = [{nodes = ['A', 'B'], mass = 0}]\n[[forces]]\n"
+      "kind = 'load_over_time'\nnodes = ['B']\nforce = [0, 0, -1000]\ntimes = [1.51, 1.51, 1.515, 1.515]\n"
+      "values = [0, 1, 1, 0]\n[gravity]\nacceleration = [0, 0, -10]\n[solver]\nstep = 0.001\nend_time = "
+      "4\n");
+  const Diagnostics d = diagnose(run);
+  const fs::path directory = fs::temp_directory_path() / ("unfurl_pulse_" + std::to_string(::getpid()));
+  fs::create_directories(directory);
+  find_export_format("html")->write({run, d, directory, "pulse", 1.0 / 30, 1.0});
+  std::ostringstream page;
+  page << std::ifstream(directory / "viewer.html", std::ios::binary).rdbuf();
+  fs::remove_all(directory);
+  const auto data = data_of(page.str());
+  const auto moments = unpacked<double>(data["moments"]);
+  const auto forces = unpacked(data["forces"]);
+  CHECK(data["largest_force"] == Approx(1030));
+  CHECK(data["full_force"] == Approx(30));  // the pulse is 5 states of 4001
+  // At every state within a fiftieth of what has full colours; few keys more than the motion, which rests,
+  // has.
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
+    const double t = run.trajectory.time(i);
+    const auto after = std::ranges::upper_bound(moments, t);
+    const auto k = static_cast<std::size_t>(after - moments.begin()) - 1;
+    const double u = after == moments.end() ? 0 : (t - moments[k]) / (*after - moments[k]);
+    const double shown = u > 0 ? (1 - u) * forces[k] + u * forces[k + 1] : forces[k];
+    CHECK(std::abs(shown - d.axial_force(static_cast<Index>(i), 0)) < 0.02 * 30);
+  }
+  CHECK(moments.size() < 260);
+  CHECK(data["warnings"].empty());
+}
+
 TEST_CASE("words in a page cannot leave their place") {
   const Exported e("html");
   const std::string evil = "</script><script>alert(1)</script> & \xff";

@@ -105,4 +105,35 @@ TEST_CASE("keys are at different times in single precision wherever the run ends
     }
 }
 
+TEST_CASE("keys are added at the states at which values leave straight lines and at no others") {
+  const Simulation run = run_scene(spun(0, 1, 0.001));
+  const MotionKeys of_motion = motion_keys(run.trajectory, 0.25, 20000);
+  // A peak of one state, a ramp that is a straight line, a step of 3 per cent, and what is not known.
+  MatrixXd values = MatrixXd::Zero(static_cast<Index>(run.trajectory.size()), 4);
+  values(437, 0) = 100;
+  for (Index i = 0; i < values.rows(); ++i)
+    values(i, 1) = 50 * run.trajectory.time(static_cast<std::size_t>(i));
+  values.col(2).tail(300).setConstant(3);
+  values.col(3).tail(200).setConstant(std::nan(""));
+  MotionKeys keys = of_motion;
+  CHECK(add_value_keys(run.trajectory, values, 2, 20000, keys) < 2);
+  // Three of the peak, two of the step.
+  CHECK(keys.times.size() == of_motion.times.size() + 5);
+  CHECK(keys.poses.size() == keys.times.size());
+  for (std::size_t k = 0; k + 1 < keys.times.size(); ++k) {
+    REQUIRE(keys.times[k] < keys.times[k + 1]);
+    CHECK((keys.poses[k] - run.trajectory.positions_at(keys.times[k])).norm() == 0);
+  }
+  const auto key = std::ranges::find(keys.times, run.trajectory.time(437));
+  REQUIRE(key != keys.times.end());
+  CHECK(values_at(run.trajectory, values, *key)[0] == 100);
+  // Half a step before it, by a straight line; where it is not known it is what is known next to it.
+  CHECK(values_at(run.trajectory, values, *key - 0.0005)[0] == Approx(50));
+  CHECK(values_at(run.trajectory, values, run.trajectory.time(800) + 0.0005)[3] == 0);
+  CHECK(std::isnan(values_at(run.trajectory, values, 0.95)[3]));
+  MotionKeys few = of_motion;
+  CHECK(add_value_keys(run.trajectory, values, 2, of_motion.times.size() + 1, few) > 50);
+  CHECK(few.times.size() == of_motion.times.size() + 1);
+}
+
 }  // namespace motion_keys_test
