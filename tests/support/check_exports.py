@@ -101,11 +101,15 @@ node, rod, length = done.stdout.split()
 assert node == names[0] and abs(float(length) - 3) < 1e-11, done.stdout  # a chord of the paper's ring is 3 m
 print("mat: equal to the tables in Octave, bit for bit")
 
+def dom(file, time):
+    return subprocess.run(
+        ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+         "--window-size=1000,700", "--virtual-time-budget=4000", "--dump-dom", f"file://{file}#t={time}&positions"],
+        capture_output=True, text=True, timeout=120).stdout
+
+
 # A browser: node positions that the page's own interpolation shows between two frames.
-page = subprocess.run(
-    ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-     "--window-size=1000,700", "--virtual-time-budget=4000", "--dump-dom",
-     f"file://{out}/viewer.html#t=4.5&positions"], capture_output=True, text=True, timeout=120).stdout
+page = dom(f"{out}/viewer.html", 4.5)
 i = int(np.searchsorted(t, 4.5))
 assert abs(t[i] - 4.5) < 1e-12
 shown = {name: numbers for name, *numbers in re.findall(r"(?:^|>)([^<>\s]+) (\S+) (\S+) (\S+)   at pixel \d", page, re.M)}
@@ -114,6 +118,12 @@ assert set(shown) == set(names)
 worst = max(np.abs(np.array(shown[name], dtype=float) - states[i, k, :3]).max() for k, name in enumerate(names))
 assert worst < 1e-4, worst
 print(f"html: in Chromium, nodes within {worst:.1e} m")
+
+# What stands upright is whole in the first view, two thirds of the window high at most.
+subprocess.run([sys.argv[1], "run", "scissor_mast", "-o", f"{out}/mast", "--quiet", "--export", "html"], check=True)
+pixels = np.array(re.findall(r"at pixel ([-0-9.]+), ([-0-9.]+)", dom(f"{out}/mast/viewer.html", 0.947)), dtype=float)
+assert len(pixels) == 20 and pixels.min() > 0 and pixels[:, 1].max() < 0.66 * 700, pixels
+print("html: all of a mast is in the picture")
 
 if len(sys.argv) > 2:
     script = (
