@@ -54,8 +54,14 @@ void FrameOverlay::add_inset(double t, DrawList& list) const {
   figure->width_mm = static_cast<double>(wide) / pixels_per_point / plot::points_per_mm;
   figure->height_mm = static_cast<double>(high) / pixels_per_point / plot::points_per_mm;
   Curve& curve = figure->panels[0].curves[0];
-  const auto shown =
-      static_cast<std::size_t>(std::upper_bound(curve.x.begin(), curve.x.end(), t + 1e-12) - curve.x.begin());
+  auto shown =
+      static_cast<std::size_t>(std::upper_bound(curve.x.begin(), curve.x.end(), t) - curve.x.begin());
+  if (shown > 0 && shown < curve.x.size() &&
+      curve.x[shown - 1] < t) {  // between two states, on a straight line
+    const double from = curve.x[shown - 1], u = (t - from) / (curve.x[shown] - from),
+                 y = (1 - u) * curve.y[shown - 1] + u * curve.y[shown];
+    if (std::isfinite(y)) curve.x[shown] = t, curve.y[shown] = y, ++shown;
+  }
   curve.x.resize(shown), curve.y.resize(shown);
   if (shown > 0) {  // a dot where the film is
     Curve here;

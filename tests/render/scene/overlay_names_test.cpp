@@ -2,6 +2,7 @@
 // Lengths and names beside a picture.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -88,6 +89,35 @@ TEST_CASE("names of nodes and rods lie on nothing else that is written") {
       }
     }
     CHECK(names > 20);  // of 12 nodes and 24 rods
+  }
+}
+
+// A body that flies at 3 m/s and falls: steps of a quarter of a second, of which dvm knows kinetic energy
+// exactly, m (9 + g^2 t^2) / 2. The dot lies on the straight line between the states around its time.
+TEST_CASE("the dot of an inset is where the film is between two states as well") {
+  const Scene scene = read_scene_text(R"(structure.kind = 'custom'
+structure.nodes = [{name="P",position=[0,0,0],velocity=[3,0,0],mass=2}]
+structure.rods = []
+gravity.acceleration = [0,0,-10]
+solver = {step = 0.25, end_time = 1}
+render.inset = 'kinetic_energy_J'
+)",
+                                      "s.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics diagnostics = diagnose(run);
+  const FrameBuilder builder(run.trajectory, film_style(scene, run, diagnostics));
+  const auto energy = [](double t) { return 9 + 100 * t * t; };
+  for (const double t : {0.0, 0.1, 0.25, 0.6, 0.75 - 1e-15, 0.999, 1.0, 1.2}) {
+    CAPTURE(t);
+    const DrawList list = builder.build(t);
+    REQUIRE(list.inset.figure);
+    const auto& curves = list.inset.figure->panels[0].curves;
+    REQUIRE(curves.size() == 2);
+    const double shown = std::min(t, 1.0), before = 0.25 * std::floor(4 * shown), u = 4 * (shown - before);
+    CHECK(curves[1].x.back() == Approx(shown));
+    CHECK(curves[1].y.back() == Approx((1 - u) * energy(before) + u * energy(before + 0.25)));
+    CHECK(curves[0].x.back() == curves[1].x.back());
+    CHECK(curves[0].y.back() == curves[1].y.back());
   }
 }
 
