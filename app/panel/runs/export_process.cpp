@@ -154,8 +154,10 @@ std::string exported(const ExportRequest& request, const ExportProcess::Task& ta
   if (const int error = child.start(words, {.error = log.file}); error != 0)
     throw FileError(request.program, error);
   std::optional<int> code;
-  while (!(code = child.wait(0.1)))
-    if (task.stopped()) child.send(SIGTERM);
+  // A second signal ends it at once, and what it has simulated is lost: only where nothing came of the first.
+  constexpr int patience = 600;  // of so many waits
+  for (int asked = 0; !(code = child.wait(0.1));)
+    if (task.stopped() && asked++ % patience == 0) child.send(SIGTERM);
   std::string text = read_text_file(log.name).text;
   while (!text.empty() && text.back() == '\n') text.pop_back();
   const auto output = std::find(words.begin(), words.end(), "-o");

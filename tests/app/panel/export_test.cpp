@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <filesystem>
+#include <string>
+#include <thread>
 
 #include "app/panel/document/own_file.hpp"
 #include "app/panel/runs/export_process.hpp"
@@ -113,4 +116,32 @@ TEST_CASE("every kind of export has a command line that its verb takes") {
     if (!kind.formats.empty()) CHECK(help.find("--export") != std::string::npos);
     CHECK((kind.verb == "figure" || help.find("--force") != std::string::npos));
   }
+}
+
+TEST_CASE("an export that is stopped keeps what it has simulated") {
+  const ScratchDirectory scratch;
+  const std::string scene = scratch.write("long.toml", R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0]}]
+rods = [{nodes = ["A", "B"], mass = 1}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+step = 0.001
+end_time = 1e5
+)");
+  const std::string out = scratch / "out";
+  {
+    ExportProcess job;
+    job.submit({UNFURL_PROGRAM, export_words(open_document(scene, {}), export_kinds()[2], out)});
+    const auto written = [&] {
+      std::error_code none;
+      return std::filesystem::file_size(out + "/unfinished/trajectory.csv", none) > 100'000 && !none;
+    };
+    for (int i = 0; i < 60000 && !written(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    REQUIRE(written());
+  }  // as the window does that is closed
+  CHECK(std::filesystem::exists(out + "/summary.json"));
+  CHECK(std::filesystem::exists(out + "/unfinished/checkpoint"));
 }
