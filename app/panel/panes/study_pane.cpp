@@ -85,10 +85,10 @@ double as_number(const ParamValue& value) {
   return std::get<double>(value);
 }
 
-// What the parameter's slider spans, rounded by the slider itself.
+// What the parameter's slider spans, rounded by the slider itself; about a usual value where it has none.
 void choose_key(const ParamRow& row, StudyRequest& request) {
   const SliderRange range = slider_range(row);
-  const double now = as_number(row.value);
+  const double now = not_given(row.value) ? first_value(row) : as_number(row.value);
   request.key = row.key;
   request.from = std::max(range.low, now > 0 ? 0.5 * now : range.low);
   request.to = std::min(range.high, now > 0 ? 1.5 * now : range.high);

@@ -2,6 +2,8 @@
 // Studies from the panel: the command line's code, beside the window.
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cmath>
+#include <string>
 #include <thread>
 
 #include "core/scene/build.hpp"
@@ -126,6 +128,24 @@ TEST_CASE("a measure over a parameter comes to the page, and bad values say why"
   driver.click("start study");
   finish_study(driver, first);
   CHECK(driver.state().studied->message.find("fold_angle") != std::string::npos);
+}
+
+TEST_CASE("a parameter without a value is studied about a usual one") {
+  PanelDriver driver;
+  driver.key(Key::three);
+  driver.state().study.kind = StudyRequest::Kind::sweep;
+  driver.frame();
+  for (const std::string key :
+       {"structure.youngs_modulus", "structure.strength", "structure.chord_rod_length"}) {
+    CAPTURE(key);
+    driver.click("study key");
+    driver.click("study key=" + key);
+    const StudyRequest& study = driver.state().study;
+    CHECK(study.key == key);
+    CHECK(std::isfinite(study.to));
+    CHECK(study.from > 0);
+    CHECK(study.from < study.to);
+  }
 }
 
 // 1.5 m g at the lowest point, whatever its length (for a rod of 5 kg without a bob 73.6 N): not the column
