@@ -7,6 +7,7 @@
 #include <exception>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "app/panel/actions.hpp"
 #include "app/panel/panes/panes.hpp"
@@ -323,6 +324,7 @@ bool ControlPanel::frame(double seconds, bool visible) {
   timed(building, [&] {
     survive([&] { host_->frame(options_.width, options_.height, seconds, [this] { draw_panes(); }); });
   });
+  keep_drawing(std::exchange(ui.unsettled, false));
   times_.widgets = building - times_.scene - times_.figures;
   keep_drawing(session_.act());
   survive([this] { keep_drawing(session_.follow_document()); });

@@ -74,7 +74,9 @@ void draw_export(Ui& ui, PanelState& state) {
     state.intents.emplace_back(&LiveSession::open_folder);
   ImGui::SameLine();
   if (button(ui, "close export", "Close", "Esc")) state.export_open = false;
-  if (!state.message.empty()) wrapped(ui.theme.dim, state.message);
+  if (state.message.empty()) return;
+  wrapped(ui.theme.dim, state.message);
+  ui.note("export said");
 }
 
 }  // namespace unfurl

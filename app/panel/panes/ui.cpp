@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace unfurl {
 
@@ -40,6 +41,8 @@ Box::~Box() {
   if (std::uncaught_exceptions() != before_) return;
   const ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
   ui_.places[name_ + " box"] = {low.x, low.y, low.x + size.x, low.y + size.y};
+  const float end = ImGui::GetCursorPosY();
+  if (std::exchange(ui_.box_ends[name_], end) != end) ui_.unsettled = true;
 }
 
 void Box::heading(const char* text) const {
@@ -67,13 +70,16 @@ bool text_field(Ui& ui, const std::string& key, std::string& value, float width,
   return (flags & ImGuiInputTextFlags_EnterReturnsTrue) != 0 ? entered : changed;
 }
 
-// Below the widget, or above it where there is no room: it covers none of its neighbours in a row.
+// Below the widget, or above it where there is no room: it covers none of its neighbours in a row. As far to
+// the left as it takes to be whole.
 void tooltip(const Ui& ui, const std::string& text) {
   if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  const float lines = ImGui::CalcTextSize(text.c_str(), nullptr, false, ui.px(340)).y + ui.px(30);
-  const bool above = high.y + lines > ImGui::GetIO().DisplaySize.y;
-  ImGui::SetNextWindowPos({low.x, above ? low.y - ui.px(6) : high.y + ui.px(6)}, ImGuiCond_Always,
+  const ImVec2 takes = ImGui::CalcTextSize(text.c_str(), nullptr, false, ui.px(340)),
+               screen = ImGui::GetIO().DisplaySize;
+  const bool above = high.y + takes.y + ui.px(30) > screen.y;
+  const float left = std::max(0.0f, std::min(low.x, screen.x - takes.x - ui.px(30)));
+  ImGui::SetNextWindowPos({left, above ? low.y - ui.px(6) : high.y + ui.px(6)}, ImGuiCond_Always,
                           {0, above ? 1.0f : 0.0f});
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(ui.px(340));

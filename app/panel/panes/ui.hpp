@@ -33,6 +33,11 @@ struct Ui {
     bool drawn = false;  // in this frame
   } typed;
 
+  // Boxes are as high as their contents were in the frame before: another frame is wanted where these
+  // changed.
+  std::map<std::string, float> box_ends;  // [pixels]
+  bool unsettled = false;
+
   float px(float points) const { return points * scale; }
   ImU32 color(const ImVec4& c, float alpha = 1) const {
     return ImGui::ColorConvertFloat4ToU32(ImVec4(c.x, c.y, c.z, c.w * alpha));

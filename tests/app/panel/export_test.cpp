@@ -145,3 +145,21 @@ end_time = 1e5
   CHECK(std::filesystem::exists(out + "/summary.json"));
   CHECK(std::filesystem::exists(out + "/unfinished/checkpoint"));
 }
+
+TEST_CASE("what an export says is in its box when the window comes to rest") {
+  PanelDriver driver(PanelDriver::small(), "four_bar");
+  driver.key(Key::e);
+  const auto rest = [&] {  // as the window's loop: no frame that is not asked for
+    for (int i = 0; i < 20 && driver.panel().frame(0); ++i) {
+    }
+  };
+  rest();
+  for (const char* message : {"one line", "", "the first of two lines\nand the second one"}) {
+    CAPTURE(message);
+    driver.state().message = message;
+    rest();
+    if (!*message) continue;
+    const plot::Rect &box = driver.panel().place("export box"), &said = driver.panel().place("export said");
+    CHECK(said.y1 < box.y1);
+  }
+}

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Studies from the panel: the command line's code, beside the window.
+#include <imgui_internal.h>
+
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
@@ -146,6 +148,21 @@ TEST_CASE("a parameter without a value is studied about a usual one") {
     CHECK(study.from > 0);
     CHECK(study.from < study.to);
   }
+}
+
+TEST_CASE("a tooltip at the window's edge is whole") {
+  PanelDriver driver;
+  driver.key(Key::three);
+  driver.state().study.kind = StudyRequest::Kind::sweep;
+  driver.frame();
+  driver.move_to("copy study");
+  for (int i = 0; i < 3; ++i) driver.frame();
+  const ImGuiWindow* tooltip = nullptr;
+  for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
+    if (window->Active && (window->Flags & ImGuiWindowFlags_Tooltip) != 0) tooltip = window;
+  REQUIRE(tooltip);
+  CHECK(tooltip->Pos.x >= 0);
+  CHECK(tooltip->Pos.x + tooltip->Size.x <= 1000);
 }
 
 // 1.5 m g at the lowest point, whatever its length (for a rod of 5 kg without a bob 73.6 N): not the column
