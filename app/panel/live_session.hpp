@@ -63,6 +63,7 @@ class LiveSession {
   void stop_study() { study_.stop(); }
   // Asks where something would be replaced, and where the scene's file is no longer what is shown.
   void start_export(bool replace = false, bool as_shown = false);
+  void stop_export() { export_.stop(); }
   void open_folder();                  // of the last export, in the desktop's own way
   void save(const std::string& path);  // asks likewise, and where others changed the scene's own file
   // Asks where that file would lose comments and the like; `losing`: it may.

@@ -74,6 +74,11 @@ void draw_export(Ui& ui, PanelState& state) {
     state.intents.emplace_back(&LiveSession::open_folder);
   ImGui::SameLine();
   if (button(ui, "close export", "Close", "Esc")) state.export_open = false;
+  if (state.exporting.running) {
+    ImGui::SameLine();
+    if (button(ui, "stop export", "Stop the export", "what is simulated is kept"))
+      state.intents.emplace_back(&LiveSession::stop_export);
+  }
   if (state.message.empty()) return;
   wrapped(ui.theme.dim, state.message);
   ui.note("export said");

@@ -118,9 +118,10 @@ TEST_CASE("every kind of export has a command line that its verb takes") {
   }
 }
 
-TEST_CASE("an export that is stopped keeps what it has simulated") {
-  const ScratchDirectory scratch;
-  const std::string scene = scratch.write("long.toml", R"(
+namespace {
+
+// Longer than anybody waits.
+constexpr const char* long_run = R"(
 [structure]
 kind = "custom"
 nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0]}]
@@ -130,20 +131,36 @@ acceleration = [0, 0, -9.81]
 [solver]
 step = 0.001
 end_time = 1e5
-)");
-  const std::string out = scratch / "out";
-  {
-    ExportProcess job;
-    job.submit({UNFURL_PROGRAM, export_words(open_document(scene, {}), export_kinds()[2], out)});
-    const auto written = [&] {
-      std::error_code none;
-      return std::filesystem::file_size(out + "/unfinished/trajectory.csv", none) > 100'000 && !none;
-    };
-    for (int i = 0; i < 60000 && !written(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    REQUIRE(written());
-  }  // as the window does that is closed
-  CHECK(std::filesystem::exists(out + "/summary.json"));
-  CHECK(std::filesystem::exists(out + "/unfinished/checkpoint"));
+)";
+
+}  // namespace
+
+TEST_CASE("an export that is stopped keeps what it has simulated") {
+  for (const bool closed : {true, false}) {
+    CAPTURE(closed);
+    const ScratchDirectory scratch;
+    const std::string scene = scratch.write("long.toml", long_run), out = scratch / "out";
+    {
+      ExportProcess job;
+      job.submit({UNFURL_PROGRAM, export_words(open_document(scene, {}), export_kinds()[2], out)});
+      const auto written = [&] {
+        std::error_code none;
+        return std::filesystem::file_size(out + "/unfinished/trajectory.csv", none) > 100'000 && !none;
+      };
+      const auto wait = [](const auto& done) {
+        for (int i = 0; i < 60000 && !done(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        REQUIRE(done());
+      };
+      wait(written);
+      if (!closed) {  // by its button
+        job.stop();
+        wait([&] { return job.ready(); });
+        CHECK(job.take().value_or("").find("interrupted") != std::string::npos);
+      }
+    }  // as the window does that is closed
+    CHECK(std::filesystem::exists(out + "/summary.json"));
+    CHECK(std::filesystem::exists(out + "/unfinished/checkpoint"));
+  }
 }
 
 TEST_CASE("what an export says is in its box when the window comes to rest") {
