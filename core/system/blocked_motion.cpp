@@ -62,7 +62,12 @@ bool has_pose(const System& system, double t, VectorXd q, Index left_out) {
 
 double misfit_of_rows(const System& system, const ConstVec& q) {
   if (system.coordinates() > most_coordinates || system.all_constraints() < system.coordinates()) return 0;
-  const MatrixXd G(picked_rows(unit_rows(system, q), counted_rows(system, q)));
+  // A drive moves what the others leave free, so that with its row they look independent.
+  std::vector<int> rows = counted_rows(system, q);
+  const std::vector<int> sources = system.all_sources();
+  for (const Drive& drive : system.drives())
+    std::erase_if(rows, [&](int r) { return sources[static_cast<std::size_t>(r)] == drive.constraint; });
+  const MatrixXd G(picked_rows(unit_rows(system, q), rows));
   if (same_rank(G, round_off, meant)) return 0;  // as nearly always, and cheaper
   const VectorXd values = singular_values(G);
   double most = 0;

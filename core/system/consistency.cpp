@@ -113,12 +113,15 @@ class Checker {
     throw StructureError("", text.str());
   }
 
-  // Row r as a sum of the others, share by share; empty where it is none.
+  // Row r as a sum of the others, share by share; empty where it is none. Others that are a change of 1/|y|
+  // of their size away from leaving the motion free count as leaving it below what counts as dependent.
   static VectorXd combination(const MatrixXd& G, Index r) {
     MatrixXd A = G.transpose();
     A.col(r).setZero();
     const VectorXd row = G.row(r).transpose(), y = least_squares(A, row);
-    if ((A * y - row).norm() > dependent * std::max(1.0, y.norm())) return {};
+    constexpr double round_off = 1e-13;  // of each share
+    const double most = y.norm(), left = (A * y - row).norm();
+    if (most * dependent_row > 1 || left > std::max(dependent, round_off * most)) return {};
     return y;
   }
   static std::vector<Index> members_of(const VectorXd& shares) {
@@ -143,8 +146,9 @@ class Checker {
       held.push_back(name(k));
     }
     if (held.empty()) return;
-    throw StructureError("", "the drive " + drive.name + " moves what other constraints hold: " +
-                                 listed(held) + "; remove the drive, or one of these");
+    throw StructureError("", "the drive " + drive.name +
+                                 " moves what other constraints hold: " + listed(held) + "; " +
+                                 too_few_digits(1 / shares.norm()) + "remove the drive, or one of these");
   }
 
   // Rows that depend on each other in every pose must ask for the same: g'_r = sum share_k g'_k at all times.

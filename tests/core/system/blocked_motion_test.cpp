@@ -42,6 +42,11 @@ std::string three_cranks(int decimals) {
          "[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nend_time = 0.1\nstep = 0.01\n";
 }
 
+// Of the first of the cranks.
+const std::string motor =
+    "[[constraints]]\nkind = 'coordinate'\nname = 'motor'\nnodes = ['B0']\ndirection = [1, 0, 0]\n"
+    "motion = 'rate'\nrate = 0.1\nramp = 0.05\n";
+
 // Rods between two held nodes, `slack` below the line, with a load across.
 std::string in_line(const std::string& slack) {
   return "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, "
@@ -89,19 +94,39 @@ TEST_CASE("a linkage that is rigid by the digits of its positions is refused and
   CHECK_FALSE(has(error_of(made), "digits"));
 }
 
+// A drive of the first crank asks for no more than the free linkage can do: it is refused with as many digits
+// as the free one is, and told the same. With nine, one of the two measures is next to what counts as zero:
+// by 1e-9 of some 1 m, a hundredth of which the free one has left, and the driven one a little more.
+TEST_CASE("a driven linkage is refused for missing digits where the free one is and told which") {
+  for (const int decimals : {3, 4, 5, 6, 7, 8, 10, 11, 12, 13, 14, 15, 16, 17}) {
+    const std::string free = three_cranks(decimals), error = error_of(free + motor);
+    CAPTURE(decimals, error);
+    CHECK(error.empty() == error_of(free).empty());
+    if (!error.empty()) CHECK(has(error, "the drive motor moves what other constraints hold"));
+    if (!error.empty()) CHECK(has(error, "give its positions all 16 digits"));
+  }
+  std::string made = three_cranks(17) + motor;
+  made.insert(made.find("{nodes = ['B1', 'B2']"), "{nodes = ['B0', 'A2'], mass = 1}, ");
+  CHECK(has(error_of(made), "the drive motor moves what other constraints hold"));
+  CHECK_FALSE(has(error_of(made), "digits"));
+}
+
 // Between what counts as rigid and round-off such rows cannot be held together; B1 is then off by 1e-5 m with
 // steps that get through.
 TEST_CASE("positions with too few digits for a step are warned of and all digits need no warning") {
-  for (const int decimals : {9, 10}) {
-    const Simulation run = run_scene(three_cranks(decimals));
-    CAPTURE(decimals);
-    REQUIRE_FALSE(run.warnings.empty());
-    CHECK(has(run.warnings.front(), "follow from one another only to"));
-    if (run.status == RunStatus::failed) CHECK(has(run.message, "give the positions all 16 digits"));
+  for (const std::string& drive : {std::string(), motor}) {
+    for (const int decimals : {9, 10}) {
+      if (decimals == 9 && !drive.empty()) continue;
+      const Simulation run = run_scene(three_cranks(decimals) + drive);
+      CAPTURE(decimals, drive);
+      REQUIRE_FALSE(run.warnings.empty());
+      CHECK(has(run.warnings.front(), "follow from one another only to"));
+      if (run.status == RunStatus::failed) CHECK(has(run.message, "give the positions all 16 digits"));
+    }
+    const Simulation right = run_scene(three_cranks(17) + drive);
+    CHECK(right.warnings.empty());
+    CHECK(right.status == RunStatus::completed);
   }
-  const Simulation right = run_scene(three_cranks(17));
-  CHECK(right.warnings.empty());
-  CHECK(right.status == RunStatus::completed);
 }
 
 TEST_CASE("rods in line under a load across are named and slack helps") {
