@@ -110,7 +110,7 @@ int cmd_render(const Arguments& arguments) {
     std::cerr << "unfurl: interrupted; what is finished is kept\n";
     return exit_interrupted;
   }
-  write_run_report(directory, scene, run, diagnostics, arguments);
+  if (all_frames(folder, shown, run)) write_run_report(directory, scene, run, diagnostics, arguments);
   results_written(team.get());
   return exit_code_of(run, diagnostics);
 }

@@ -110,7 +110,7 @@ void plan_film(const Scene& scene, const Simulation& run, const Arguments& argum
   plan.files.emplace_back("film.json");
   if (!plan.drawn) return;
   plan.files.emplace_back("figures/");
-  plan.files.emplace_back("report.html");
+  if (plan.frames == film) plan.files.emplace_back("report.html");
   plan.figures_s = figure_s * static_cast<double>(figure_kinds().size());
 }
 

@@ -93,7 +93,9 @@ TEST_CASE(
         std::string::npos);
   CHECK(lacking.err.find(" --frames 1:3\n") != std::string::npos);
   CHECK(files_in(dir / "out/frames").size() == 1);
+  CHECK_FALSE(fs::exists(dir / "out/report.html"));  // whose receipt asks for the whole film
   REQUIRE(run_program(with(film, {"--frames", "1:3"})).code == 0);
+  CHECK(run_program({"reproduce", dir / "out/report.html"}).code == 0);
   fs::remove(dir / "out/animation.webp");
   // Another film's frames do not go for one of which nothing is drawn.
   const ProgramResult other =
