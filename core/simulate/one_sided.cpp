@@ -18,6 +18,9 @@ constexpr double force_zero = 1e-10;  // of the largest multiplier
 constexpr double handed_over = 1e4;   // of what counts as zero for a motor's torque
 // Of what counts as touching: a distance within that is taken as one that grows, once it has come to zero.
 constexpr double beside_zero = 100;
+// So far behind its length a cable goes taut, of what counts as zero: by more than that is located to, so
+// that it pulls there and does not push, by which a stop would be left that bears nothing else.
+constexpr double just_taut = 0.02;
 
 // Do they measure the same? Ends of a length may be told either way round.
 bool same(const Measure& a, const Measure& b) {
@@ -310,7 +313,7 @@ double OneSided::law_margin(std::size_t i, const State& state, const VectorXd& q
   const double sign = active_[i] ? 1.0 : -1.0, zero = stops_.touching();
   const double margin = sign * stretch(cables_[i - stops_.size()], state.t, q, v, rate);
   rate = sign * rate / zero;
-  return margin / zero;
+  return margin / zero + (active_[i] ? 0.0 : just_taut);
 }
 
 std::vector<std::size_t> OneSided::laws_left(const System& system, const State& state) {

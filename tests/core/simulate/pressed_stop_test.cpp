@@ -137,4 +137,38 @@ TEST_CASE("a panel that its spring presses on a stop rests there") {
       }
 }
 
+// It comes to rest on its stop by itself, 0.45 m from a fixed node at 0.05 s; a cable between them, whose
+// length falls evenly, comes to that 0.15 m / 0.1234 m/s after the start. From there on it presses on the
+// stop, or (on the other side, to a node at 2.5 m) takes the body off it at once: nothing else
+// happens within half a swing of 2 kg on it.
+TEST_CASE("a cable that goes taut on what rests on a stop without a force presses on it or takes it off") {
+  const std::string stops[] = {
+      "kind = \"length_stop\"\nnodes = [\"X\", \"M\"]\nmin = 0.45\n",
+      "kind = \"coordinate_stop\"\nnodes = [\"M\"]\ndirection = [1, 0, 0]\nmin = 0.45\n",
+      "kind = \"cable\"\nnodes = [\"Y\", \"M\"]\nlength = 2.05\n"};
+  for (const std::string& stop : stops)
+    for (const bool away : {false, true})
+      for (const double stiffness : {0.5, 50.0, 500.0, 5e3})
+        for (const double step : {0.1, 0.02, 0.01, 0.001}) {
+          INFO(stop << "away " << away << ", stiffness " << stiffness << ", step " << step);
+          const Simulation run = run_scene(
+              "[structure]\nkind = \"custom\"\nnodes = [{name = \"X\", position = [0, 0, 0], fixed = true}, "
+              "{name = \"M\", position = [0.5, 0, 0], mass = 2, velocity = [-1, 0, 0]}, {name = \"Y\", "
+              "position = [2.5, 0, 0], fixed = true}]\n[[constraints]]\nkind = \"line\"\nnodes = [\"M\"]\n"
+              "direction = [1, 0, 0]\n[[constraints]]\nname = \"s\"\n" +
+              stop + "[[forces]]\nkind = \"cable\"\nname = \"c\"\nnodes = [\"" + (away ? "Y" : "X") +
+              "\", \"M\"]\nlength = " + (away ? "2.2" : "0.6") + "\naxial_stiffness = " + number(stiffness) +
+              "\nmotion = \"rate\"\nrate = -0.1234\n[solver]\nstages = 4\nend_time = 1.25\nstep = " +
+              number(step) + "\n");
+          REQUIRE(run.status == RunStatus::completed);
+          REQUIRE(run.events.size() >= (away ? 3 : 2));
+          CHECK(run.events[0].t == Approx(0.05).epsilon(1e-9));
+          for (std::size_t i = 1; i < run.events.size(); ++i)
+            CHECK(run.events[i].t == Approx(0.15 / 0.1234).epsilon(1e-9));
+          CHECK(run.events[1].name == "c pulls");
+          CHECK(run.events.size() == (away ? 3 : 2));
+          if (!away) CHECK(std::abs(testing::end_positions(run)[3] - 0.45) < 1e-11);
+        }
+}
+
 }  // namespace pressed_stop_test
