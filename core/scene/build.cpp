@@ -95,15 +95,20 @@ std::vector<SceneElement> placing(const std::vector<SceneElement>& elements,
   return found;
 }
 
+bool ends_deployed(const Scene& scene) {
+  return !scene.deployment.terms.empty() && scene.solver.at_deployed != "pass";
+}
+
 // Moves the nodes to where they are at t = 0, which given lengths of rods say; what follows that is "as at
 // t = 0" (rest lengths, limits, stowed values, ...) is taken there. Notes of what was moved.
 std::vector<std::string> place_nodes(const Scene& scene, Structure& structure) {
   if (lengths_fit(structure)) return {};
   Structure placed = structure;
   placed.notes.clear();
-  add_elements(placing(scene.forces, scene_forces(), true), scene_forces(), scene.solver.end_time, placed);
+  add_elements(placing(scene.forces, scene_forces(), true), scene_forces(), scene.solver.end_time,
+               ends_deployed(scene), placed);
   add_elements(placing(scene.constraints, scene_constraints(), false), scene_constraints(),
-               scene.solver.end_time, placed);
+               scene.solver.end_time, ends_deployed(scene), placed);
   warm_braces(placed);
   placed.notes.clear();
   try {
@@ -439,8 +444,9 @@ Structure build_structure(const Scene& scene) {
   add_gravity(scene, structure);
   add_loads(scene, structure);
   if (is_sector(structure)) refuse_elements(scene);
-  add_elements(scene.forces, scene_forces(), scene.solver.end_time, structure);
-  add_elements(scene.constraints, scene_constraints(), scene.solver.end_time, structure);
+  add_elements(scene.forces, scene_forces(), scene.solver.end_time, ends_deployed(scene), structure);
+  add_elements(scene.constraints, scene_constraints(), scene.solver.end_time, ends_deployed(scene),
+               structure);
   warm_braces(structure);
   find_jumps(scene, structure);
   add_deployment(scene, structure);

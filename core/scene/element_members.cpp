@@ -413,9 +413,10 @@ Vec3 ElementAdder::direction(const SceneElement& element, const std::string& key
 }
 
 void add_elements(const std::vector<SceneElement>& elements, const std::vector<ElementKind>& kinds,
-                  double end_time, Structure& structure) {
+                  double end_time, bool ends_deployed, Structure& structure) {
   if (elements.empty()) return;
-  ElementAdder adder{structure, end_time, MemberFinder(structure)};
+  ElementAdder adder{structure, end_time, MemberFinder(structure),
+                     ends_deployed || !structure.deployment.empty()};
   for (const SceneElement& element : elements)
     if (element.enabled) find_kind(kinds, element.kind)->add(element, adder);
   adder.find.throw_problems();

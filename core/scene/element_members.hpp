@@ -94,6 +94,7 @@ struct ElementAdder {
   Structure& structure;
   double end_time;  // of the run: drives are looked at until then [s]
   MemberFinder find;
+  bool may_end_before;  // where the structure is deployed
 
   const Node& node(int index) const { return structure.nodes[static_cast<std::size_t>(index)]; }
   // A direction of length 1; zero after a problem was noted.

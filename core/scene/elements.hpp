@@ -77,8 +77,9 @@ std::optional<Measure> angle_of(const SceneElement& element, MemberFinder& find)
 double start_value(const SceneElement& element, const Structure& structure);
 
 // Adds what the elements of one of the tables of kinds say to the structure; `end_time` is that of the run
-// [s]. Throws SceneError with all that cannot be.
+// [s], `ends_deployed`: it may end before, where [deployment] says. Throws SceneError with all that cannot
+// be.
 void add_elements(const std::vector<SceneElement>& elements, const std::vector<ElementKind>& kinds,
-                  double end_time, Structure& structure);
+                  double end_time, bool ends_deployed, Structure& structure);
 
 }  // namespace unfurl

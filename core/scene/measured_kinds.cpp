@@ -88,7 +88,7 @@ void check_reach(const SceneElement& e, ElementAdder& to, const Measure& measure
   const MeasureRange range = range_of(measure);
   if ((!std::isfinite(range.low) && !std::isfinite(range.high)) || !f.moves()) return;
   // A run may end before a constant rate comes that far: where it is deployed.
-  if (f.kind == TimeFunction::Kind::rate && !to.structure.deployment.empty()) return;
+  if (f.kind == TimeFunction::Kind::rate && to.may_end_before) return;
   constexpr int samples = 4000;
   for (int i = 0; i <= samples; ++i) {
     const double t = to.end_time * i / samples, value = f(t);

@@ -185,6 +185,26 @@ TEST_CASE("drives that leave what their measure can be are refused, with the tim
   CHECK(ring("'smooth',to=-1,duration=2").find("to: takes the length to ") != std::string::npos);
 }
 
+// From 1 m on at -0.1 m/s behind a ramp of 1 s, which is worth half of it: half is left at 5.5 s, nothing at
+// 10.5 s. An end_time that is left out is later than both.
+TEST_CASE("a drive at a constant rate that a deployment ends before it is at its end is no mistake") {
+  const std::string scene =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'W', position = [0, 0, 0], fixed = true}, {name = 'M', "
+      "position = [1, 0, 0], mass = 2}]\n[[constraints]]\nkind = 'line'\nnodes = ['M']\ndirection = [1, 0, "
+      "0]\n[[constraints]]\nkind = 'length'\nname = 'a'\nnodes = ['W', 'M']\nmotion = 'rate'\nrate = -0.1\n"
+      "ramp = 1\n[deployment]\nmeasure = 'a'\ndeployed = 0.5\n[solver]\nstep = 0.01\n";
+  for (const char* at : {"stop", "latch"}) {
+    const Simulation run =
+        testing::run_scene(scene, {std::string("solver.at_deployed=") + at, "solver.end_time=11"});
+    REQUIRE_FALSE(run.events.empty());
+    CHECK(run.events.front().kind == "deployed");
+    CHECK(run.events.front().t == Approx(5.5).epsilon(1e-9));
+  }
+  CHECK(testing::run_scene(scene).status == RunStatus::deployed);
+  CHECK(testing::error_of(scene, {"solver.at_deployed=pass"}).find("rate: takes the length to ") !=
+        std::string::npos);
+}
+
 // |x| has no way on through 0, nor an angle without a sign through 0 and 180 degrees: it turns back there, a
 // stop at such a limit would never act, and no latch would hold.
 TEST_CASE("limits at which a measure turns back are refused") {
