@@ -16,6 +16,7 @@
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/team_work.hpp"
 #include "app/verbs/unfinished_run.hpp"
+#include "core/diagnostics/peaks.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/write.hpp"
 #include "render/scene/film_style.hpp"
@@ -68,7 +69,7 @@ int cmd_render(const Arguments& arguments) {
   const InterruptGuard guard;
   std::optional<FinishedWork> keeping(std::in_place);  // of a motion that is interrupted too
   Simulation run = simulate_scene(scene, std::move(model), arguments);
-  const Diagnostics diagnostics = judge_run(run);
+  Diagnostics diagnostics = judge_run(run);
   const bool another = !folder.holds_this();  // whose results stay until the new ones are whole
   const auto claim = [&] {
     folder.claim();
@@ -87,6 +88,7 @@ int cmd_render(const Arguments& arguments) {
     if (!writes) return interrupted() ? exit_interrupted : exit_code_of(run, diagnostics);
   }
   RunAhead beside(arguments.threads);
+  std::optional<RememberedExtremes> once(std::in_place);  // of the summary and of what is said
   const std::string summary = write_data(
       directory, scene, run, diagnostics, as_typed(arguments.words), beside, true,
       [&] { another ? FilmFolder::clear(output.written()) : make_room(output.written(), Beside::film); });
@@ -94,6 +96,7 @@ int cmd_render(const Arguments& arguments) {
   write_exports(formats, directory, scene, run, diagnostics, arguments);
   keeping.reset();
   report_run(run, diagnostics, arguments);
+  once.reset();
   if (arguments.json) std::cout << summary << std::flush;
   if (exit_code_of(run, diagnostics) == exit_interrupted) return exit_interrupted;
 

@@ -62,7 +62,7 @@ int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, O
               Beside film, RunAhead& ahead) {
   const std::filesystem::path& directory = output.path();
   ahead.take(run.trajectory);
-  const Diagnostics diagnostics = judged(run, ahead);
+  Diagnostics diagnostics = judged(run, ahead);
   ahead.leave_out(run.trajectory.size());
   const RememberedExtremes once;  // of the summary and of what is said
   // An earlier run's results stay until these are whole: the disk may be full.
@@ -78,8 +78,8 @@ int write_end(const Scene& scene, UnfinishedRun& unfinished, Simulation& rest, s
               const Arguments& arguments, RunAhead& ahead) {
   ahead.beside().finish();
   const bool stopped = rest.status == RunStatus::stopped;
-  const Digest whole = stopped ? unfinished.interrupt(rest, first) : unfinished.finish(rest, first);
-  const Diagnostics& d = whole.diagnostics;
+  Digest whole = stopped ? unfinished.interrupt(rest, first) : unfinished.finish(rest, first);
+  Diagnostics& d = whole.diagnostics;
   receipt_errors({{"constraint_error_m", largest_magnitude(d.at("constraint_max_m").values)},
                   {"energy_balance_J", largest_magnitude(d.at("energy_balance_J").values)}});
   const std::string summary = write_data(arguments.output, scene, whole.run, d, as_typed(arguments.words),

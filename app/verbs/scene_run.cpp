@@ -21,6 +21,7 @@
 #include "app/own_options.hpp"
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/ending.hpp"
+#include "core/diagnostics/peaks.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/checksum.hpp"
 #include "core/export/csv.hpp"
@@ -101,8 +102,8 @@ std::string write_tables(const std::filesystem::path& directory, const std::stri
 }  // namespace
 
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
-                       const Diagnostics& diagnostics, const std::string& command, RunAhead& ahead,
-                       bool tables, const std::function<void()>& make_room) {
+                       Diagnostics& diagnostics, const std::string& command, RunAhead& ahead, bool tables,
+                       const std::function<void()>& make_room) {
   const std::string text = scene_text(scene);
   const auto summary = [&] {
     const Model& model = run.trajectory.model();
@@ -112,7 +113,14 @@ std::string write_data(const std::filesystem::path& directory, const Scene& scen
     Checksum hash;
     hash.add(text);
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-    return summary_json(scene.name, run, diagnostics, mobility, {command, hash.text(), wall});
+    const RunRecord record{command, hash.text(), wall};
+    try {
+      const LooksUntil end(waited_enough);
+      return summary_json(scene.name, run, diagnostics, mobility, record);
+    } catch (const LookedEnough&) {  // what tops the states between them was not found
+      diagnostics.left_open = 1;
+      return summary_json(scene.name, run, diagnostics, mobility, record);
+    }
   };
   if (directory.empty()) return summary();
   if (tables) return write_tables(directory, text, run, diagnostics, ahead, summary, make_room);

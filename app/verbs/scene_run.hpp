@@ -29,9 +29,10 @@ Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model
 
 // scene.toml, series.csv, trajectory.csv, rod_forces.csv and summary.json; returns the text of the latter. An
 // empty directory name writes nothing. command: what was typed, for the summary; tables: those in CSV, too;
-// make_room: called when all bytes are on the disk, before the files get their names.
+// make_room: called when all bytes are on the disk, before the files get their names. Half a second after
+// Ctrl-C the last state is left open in the diagnostics, and so are extremes within steps.
 std::string write_data(const std::filesystem::path& directory, const Scene& scene, const Simulation& run,
-                       const Diagnostics& diagnostics, const std::string& command, RunAhead& ahead,
+                       Diagnostics& diagnostics, const std::string& command, RunAhead& ahead,
                        bool tables = true, const std::function<void()>& make_room = {});
 
 // What the run before left in DIR goes, but for the five files of a run, which new ones replace at one

@@ -313,7 +313,7 @@ std::string words_of_interruption(const Diagnostics& d) {
   if (d.left_open == 0) return "interrupted before it was known which forces are unique";
   std::ostringstream text;
   text << "interrupted: the run was judged up to t = " << d.t[d.t.size() - d.left_open - 1]
-       << " s only: what follows is nan in series and rod forces, and so are measures of the whole run";
+       << " s only: what follows may be nan in series and rod forces, and measures of the whole run are";
   return text.str();
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "core/diagnostics/books.hpp"
@@ -477,12 +478,11 @@ RememberedExtremes::~RememberedExtremes() {
 PeakInMotion extreme_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column,
                                bool largest) {
   if (diagnostics.left_open > 0) return {};  // it may lie in what was not judged
-  const double sign = largest ? 1.0 : -1.0;
-  if (!remembered) return looked_for_extreme(run, diagnostics, column, sign);
-  const auto [found, made] =
-      remembered->found_.try_emplace({&diagnostics, std::string(column), largest}, PeakInMotion());
-  if (made) found->second = looked_for_extreme(run, diagnostics, column, sign);
-  return found->second;
+  if (!remembered) return looked_for_extreme(run, diagnostics, column, largest ? 1.0 : -1.0);
+  const std::tuple key(&diagnostics, std::string(column), largest);
+  if (const auto known = remembered->found_.find(key); known != remembered->found_.end())
+    return known->second;
+  return remembered->found_[key] = looked_for_extreme(run, diagnostics, column, largest ? 1.0 : -1.0);
 }
 
 double largest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column) {

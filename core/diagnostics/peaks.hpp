@@ -52,6 +52,17 @@ VectorXd rod_forces_within_step(const Simulation& run, double t);
 
 class MotionSamples;
 
+// While one of these lives, looking into the motion of a run for this thread's largest and smallest values
+// ends with LookedEnough as soon as `enough` says so.
+struct LookedEnough {};
+class LooksUntil {
+ public:
+  explicit LooksUntil(bool (*enough)());
+  ~LooksUntil();
+  LooksUntil(const LooksUntil&) = delete;
+  LooksUntil& operator=(const LooksUntil&) = delete;
+};
+
 // While one of these lives, largest and smallest values that this thread has found are not looked for again:
 // several measures of a run, which stays as it is meanwhile, begin with the same ones. One within another
 // shares what that has found.

@@ -173,7 +173,7 @@ TEST_CASE("a run is good up to where its books are off for good, and says why") 
   CHECK(mistrust(j.run, j.d).empty());
   std::ostringstream open;
   open << "interrupted: the run was judged up to t = " << j.d.t[3]
-       << " s only: what follows is nan in series and rod forces, and so are measures of the whole run";
+       << " s only: what follows may be nan in series and rod forces, and measures of the whole run are";
   CHECK(warnings(j) == Texts{open.str()});
 }
 

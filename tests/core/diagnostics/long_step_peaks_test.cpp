@@ -160,4 +160,19 @@ TEST_CASE("peaks of mechanisms of millimetres are those of metres, with a rotor 
   CHECK(millimetres.t == Approx(metres.t).epsilon(1e-6));
 }
 
+// Extremes that were found stay known; what was given up is found when it is asked for again.
+TEST_CASE("looking for extremes within steps ends when it is told to and leaves nothing wrong behind") {
+  const Simulation run = run_of("pendulum", {"solver.end_time=1"});
+  const Diagnostics d = diagnose(run);
+  const double top = largest_of_column(run, d, "kinetic_energy_J");
+  const RememberedExtremes once;
+  {
+    const LooksUntil end([] { return true; });
+    CHECK_THROWS_AS(largest_of_column(run, d, "kinetic_energy_J"), LookedEnough);
+  }
+  CHECK(largest_of_column(run, d, "kinetic_energy_J") == top);
+  const LooksUntil end([] { return true; });
+  CHECK(largest_of_column(run, d, "kinetic_energy_J") == top);
+}
+
 }  // namespace long_step_peaks_test
