@@ -133,8 +133,8 @@ std::vector<Sleeve> housings(const DrawList& list) {
 TEST_CASE("line drawings and exports have telescopes and actuators too") {
   const Scene scene = read_scene_text(machine, "machine.toml");
   const Simulation run = simulate(build_model(scene), scene.solver);
-  RenderOptions blueprint;
-  blueprint.look = "blueprint";
+  FrameStyle blueprint;
+  blueprint.options.look = "blueprint";
   const DrawList list = FrameBuilder(run.trajectory, blueprint).build(0.35);
   const VectorXd x = run.trajectory.positions_at(0.35);
   const auto node = [&](int k) { return Vec3f(x.segment<3>(3 * k).cast<float>()); };
