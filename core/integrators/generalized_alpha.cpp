@@ -21,19 +21,27 @@ constexpr double wanted_level = 2.0, accepted_level = 100.0;
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 // Where forces vary, corrections that leave more than this share of the residual take their derivatives in.
 constexpr double contracting = 0.1;
+// Up to these h^2 dF/dz / m and h dF/dw / m a step begins with the true acceleration. Of rods, springs and
+// their masses h omega is below 4 then and h c / m below 3: by the recursion (3 x 3) nothing gains up to 5
+// and 3, however often steps begin anew.
+constexpr double resolved_stiffness = 4.0, resolved_damping = 0.5;
+// A step that is so many times as long as the one before it begins anew.
+constexpr double longer = 2.0, same_step = 1e-9;
 
 class GeneralizedAlpha final : public Integrator {
  public:
   GeneralizedAlpha(const System& system, double rho)
       : system_(system),
-        alpha_f_(rho / (rho + 1)),
         steady_(steady_weights(rho)),
+        stiff_first_{rho / (rho + 1), 0.0, 0.5, 1.0},
         start_(system),
         G_(system.jacobian_pattern()),
         saddle_(system.mass(), G_),
         least_mass_(system.mass().diagonal().minCoeff()),
         rows_(system) {
-    for (VectorXd* v : {&a0_, &a_, &acceleration0_, &acceleration_, &z_, &w_, &residual_, &dz_, &inertia_})
+    lead_ = steady_.alpha_m - steady_.alpha_f;
+    for (VectorXd* v :
+         {&a0_, &a_, &change_, &acceleration0_, &acceleration_, &z_, &w_, &residual_, &dz_, &inertia_})
       v->setZero(system.solved_coordinates());
     for (VectorXd* v : {&lambda_, &dlambda_, &phi_, &offset_}) v->setZero(system.constraints());
     for (VectorXd* v : {&q_, &v_, &force_, &applied_}) v->setZero(system.coordinates());
@@ -41,14 +49,21 @@ class GeneralizedAlpha final : public Integrator {
 
   StepReport step(State& state, double h) override {
     StepReport report;
-    if (!begin(state, report)) return report;
+    if (!begin(state, h, report)) return report;
     iterate(state, h, report);
+    goes_on_ = report.ok();
     if (!report.ok()) {
       restart();
       return report;
     }
+    change_ = a_ - a0_;
+    if (trapezium_)
+      a0_ = a_ + lead_ * change_;
+    else
+      a0_ = a_;
+    trapezium_ = false;
+    h_ = h;
     weights_ = steady_;
-    a0_ = a_;
     acceleration0_ = acceleration_;
     state.t += h;
     state.z = z_;
@@ -62,13 +77,18 @@ class GeneralizedAlpha final : public Integrator {
  private:
   // How a_1 weighs on the step.
   struct Weights {
-    double alpha_m, beta, gamma;
+    double alpha_f, alpha_m, beta, gamma;
   };
   static Weights steady_weights(double rho) {
-    const double alpha_m = (2 * rho - 1) / (rho + 1), gamma = 0.5 + rho / (rho + 1) - alpha_m;
-    return {alpha_m, 0.25 * (gamma + 0.5) * (gamma + 0.5), gamma};
+    const double alpha_f = rho / (rho + 1), alpha_m = (2 * rho - 1) / (rho + 1),
+                 gamma = 0.5 + alpha_f - alpha_m;
+    return {alpha_f, alpha_m, 0.25 * (gamma + 0.5) * (gamma + 0.5), gamma};
   }
-  bool begin(const State& state, StepReport& report);
+  bool resolves(double h) const {
+    return h * h * stiffness_ <= resolved_stiffness * least_mass_ &&
+           h * damping_ <= resolved_damping * least_mass_;
+  }
+  bool begin(const State& state, double h, StepReport& report);
   void look_at_forces(const State& state);
   void predict(const State& state, double h);
   void stay(const State& state, double h);
@@ -79,15 +99,16 @@ class GeneralizedAlpha final : public Integrator {
   bool correct_with_forces(double t, double h, StepReport& report);
   void iterate(const State& state, double h, StepReport& report);
   double newton_scale(double h) const {
-    return (1 - weights_.alpha_m) / (h * h * weights_.beta * (1 - alpha_f_));
+    return (1 - weights_.alpha_m) / (h * h * weights_.beta * (1 - weights_.alpha_f));
   }
 
   const System& system_;
-  double alpha_f_;
-  // A first step has no algorithmic acceleration behind it: it takes a_0 = a_1. The true acceleration would
-  // do for motions that the step resolves; of stiff ones it is (h omega)^2 too large.
-  static constexpr Weights first_{0.0, 0.5, 1.0};
-  Weights steady_, weights_ = first_;
+  // A first step has no algorithmic acceleration behind it: it takes a_0 = a_1, of order 1. The true
+  // acceleration would do for motions that the step resolves; of stiff ones it is (h omega)^2 too large.
+  // Behind edges of time, of which there may be as many as steps, those that go on where the last one has led
+  // begin with it, by the trapezium, of order 2, where they resolve what moves.
+  static constexpr Weights resolved_first{0.5, 0.5, 0.25, 0.5};
+  Weights steady_, stiff_first_, weights_ = stiff_first_;
   Index1 start_;
   SparseRows G_;
   std::vector<double> scratch_;
@@ -96,6 +117,11 @@ class GeneralizedAlpha final : public Integrator {
   VectorXd z_, w_, residual_, dz_, inertia_, lambda_, dlambda_, phi_, offset_, q_, v_, force_, applied_;
   double residual_size_ = 0;
   bool have_acceleration_ = false;
+  double h_ = 0;            // of the last step
+  bool goes_on_ = false;    // the last step was solved
+  bool trapezium_ = false;  // this is a first step by resolved_first
+  double lead_ = 0;  // alpha_m - alpha_f: a_0 of steady steps is that of the time t + (alpha_m - alpha_f) h
+  VectorXd change_;  // of a_0 in the last step
   bool stiff_ = false;  // forces are too stiff for corrections that know nothing of them
   double least_mass_;
   SparseRows by_z_, by_w_;              // derivatives of the forces at the first of these steps
@@ -103,8 +129,11 @@ class GeneralizedAlpha final : public Integrator {
   RowNoise rows_;
 };
 
-bool GeneralizedAlpha::begin(const State& state, StepReport& report) {
-  if (have_acceleration_) return true;
+bool GeneralizedAlpha::begin(const State& state, double h, StepReport& report) {
+  if (have_acceleration_ && !(resolves(h) && h > longer * h_)) {
+    if (resolves(h) && std::abs(h - h_) > same_step * h_) a0_ += lead_ * (h / h_ - 1) * change_;
+    return true;
+  }
   ++report.factorisations;
   ++report.right_hand_sides;
   if (!start_.evaluate(state, acceleration0_, lambda_)) {
@@ -112,8 +141,9 @@ bool GeneralizedAlpha::begin(const State& state, StepReport& report) {
     return false;
   }
   a0_ = acceleration0_;
-  weights_ = first_;
   look_at_forces(state);
+  trapezium_ = goes_on_ && state.z == z_ && resolves(h);
+  weights_ = trapezium_ ? resolved_first : stiff_first_;
   return have_acceleration_ = true;
 }
 
@@ -136,17 +166,17 @@ void GeneralizedAlpha::predict(const State& state, double h) {
 // The acceleration that leaves the pose as it is. Accelerations of stiff forces lead anywhere, through the
 // middle of a spring to its other side, too.
 void GeneralizedAlpha::stay(const State& state, double h) {
-  const auto& [alpha_m, beta, gamma] = weights_;
+  const auto& [alpha_f, alpha_m, beta, gamma] = weights_;
   lambda_ = state.lambda;
   a_ = (-h * state.w - h * h * (0.5 - beta) * a0_) / (h * h * beta);
-  acceleration_ = ((1 - alpha_m) * a_ + alpha_m * a0_ - alpha_f_ * acceleration0_) / (1 - alpha_f_);
+  acceleration_ = ((1 - alpha_m) * a_ + alpha_m * a0_ - alpha_f * acceleration0_) / (1 - alpha_f);
   set_pose(state, h);
 }
 
 // a_1, z_1, w_1 that belong to w'_1.
 void GeneralizedAlpha::set_pose(const State& state, double h) {
-  const auto& [alpha_m, beta, gamma] = weights_;
-  a_ = ((1 - alpha_f_) * acceleration_ + alpha_f_ * acceleration0_ - alpha_m * a0_) / (1 - alpha_m);
+  const auto& [alpha_f, alpha_m, beta, gamma] = weights_;
+  a_ = ((1 - alpha_f) * acceleration_ + alpha_f * acceleration0_ - alpha_m * a0_) / (1 - alpha_m);
   z_ = state.z + (h * state.w + h * h * ((0.5 - beta) * a0_ + beta * a_));
   w_ = state.w + h * ((1 - gamma) * a0_ + gamma * a_);
 }
