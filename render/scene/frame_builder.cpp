@@ -272,13 +272,19 @@ void FrameBuilder::aim(const std::vector<Vec3>& at, DrawList& list) const {
   list.framed_center = camera.target;
 }
 
-DrawList FrameBuilder::build(double t) const {
-  const double span = trajectory_.end_time() - trajectory_.start_time();
-  const double progress = span > 0 ? std::clamp((t - trajectory_.start_time()) / span, 0.0, 1.0) : 0.0;
-  return build(Shot{t, progress, 0});
+bool FrameBuilder::writes_by_camera() const {
+  const RenderOptions& o = style_.options;
+  return style_.labels &&
+         (look_->dimensions || o.dimensions || o.scale_bar || o.axes || o.node_labels || o.rod_labels);
 }
 
-DrawList FrameBuilder::build(const Shot& shot) const {
+DrawList FrameBuilder::build(double t, const Led& led) const {
+  const double span = trajectory_.end_time() - trajectory_.start_time();
+  const double progress = span > 0 ? std::clamp((t - trajectory_.start_time()) / span, 0.0, 1.0) : 0.0;
+  return build(Shot{t, progress, 0}, led);
+}
+
+DrawList FrameBuilder::build(const Shot& shot, const Led& led) const {
   const double inside = std::clamp(shot.t, trajectory_.start_time(), trajectory_.end_time());
   const VectorXd whole = placed(trajectory_.positions_at(inside));
   DrawList list = still_;
@@ -290,6 +296,7 @@ DrawList FrameBuilder::build(const Shot& shot) const {
   std::vector<Vec3> at;
   for (Index k = 0; k < whole.size() / 3; ++k) at.push_back(node(whole, static_cast<int>(k)));
   if (style_.options.follow && !at.empty()) aim(at, list);
+  if (led) list.camera = led(list);
   add_bodies(inside, at, list);
   add_lines(whole, list);
   if (style_.loads && style_.options.loads) add_loads(whole, list);

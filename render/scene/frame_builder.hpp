@@ -2,6 +2,7 @@
 // A moment of a run becomes a picture as data, by what the run and the structure say; no solver is asked.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -47,9 +48,12 @@ class FrameBuilder {
   ~FrameBuilder();
   FrameBuilder(FrameBuilder&&) noexcept;
 
+  // Another camera than the film's, which the picture has that it is given.
+  using Led = std::function<Camera(const DrawList&)>;
   // At any time [s]; outside the run its nearest end.
-  DrawList build(double t) const;
-  DrawList build(const Shot& shot) const;
+  DrawList build(double t, const Led& led = {}) const;
+  DrawList build(const Shot& shot, const Led& led = {}) const;
+  bool writes_by_camera() const;  // names, lengths, axes: what stands elsewhere when the camera does
   // What sizes, colours and signs of the picture at a time stand for, alone: for a place beside pictures
   // without.
   DrawList key(double t) const;

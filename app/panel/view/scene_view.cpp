@@ -57,6 +57,15 @@ bool same(const Camera& a, const Camera& b) {
          a.near_plane == b.near_plane && a.far_plane == b.far_plane && a.parallel_height == b.parallel_height;
 }
 
+// The film's camera, or the one that is led by hand.
+Camera camera_by(const PanelState& state, const Camera& film, const DrawList& list) {
+  if (!state.orbit) return film;
+  Camera camera = camera_of(*state.orbit, list.center, list.radius);
+  if (film.parallel_height > 0)
+    camera.parallel_height = 2 * state.orbit->distance * std::tan(0.5f * state.orbit->field_of_view);
+  return camera;
+}
+
 FrameStyle style_of(const LiveRun& run, const RenderOptions& picture) {
   Scene scene = run.scene;
   scene.render = picture;
@@ -102,7 +111,12 @@ void SceneView::rebuild(PanelState& state) {
     plain.origin = builder_->origin();
     ghost_ = std::make_unique<FrameBuilder>(ghost_run_->simulation.trajectory, plain);
   }
-  list_ = builder_->build(state.playback.t);
+  build(state);
+}
+
+void SceneView::build(const PanelState& state) {
+  list_ = builder_->build(
+      state.playback.t, [&](const DrawList& films) { return camera_by(state, film_ = films.camera, films); });
   t_ = state.playback.t;
 }
 
@@ -124,17 +138,12 @@ void SceneView::prepare(int width, int height, PanelState& state) {
     ghost_run_ = ghost;
     rebuild(state);
   } else if (t_ != state.playback.t) {
-    list_ = builder_->build(state.playback.t);
-    t_ = state.playback.t;
+    build(state);
   }
 }
 
 Camera SceneView::camera(const PanelState& state) const {
-  if (!state.orbit) return list_.camera;
-  Camera camera = camera_of(*state.orbit, list_.center, list_.radius);
-  if (list_.camera.parallel_height > 0)
-    camera.parallel_height = 2 * state.orbit->distance * std::tan(0.5f * state.orbit->field_of_view);
-  return camera;
+  return camera_by(state, film_, list_);
 }
 
 OrbitCamera SceneView::framed_start() const {
@@ -176,7 +185,6 @@ std::string SceneView::scale_note() const {
 
 DrawList SceneView::decorated(const PanelState& state) const {
   DrawList list = list_;
-  list.camera = camera(state);
   if (!options_.labels) std::erase_if(list.labels, is_scale_note);
   if (list.transparent) {  // for paper, which is white
     list.transparent = false;
@@ -197,6 +205,8 @@ bool SceneView::paint(const PanelState& state, bool coarse) {
   if (!builder_) return false;
   const Painted wanted{run_.get(), ghost_run_.get(), t_, camera(state), dark_, coarse};
   if (wanted == painted_) return false;
+  if (builder_->writes_by_camera() && !same(wanted.camera, list_.camera)) build(state);
+  list_.camera = wanted.camera;
   renderer_->paint(decorated(state), coarse);
   painted_ = wanted;
   ++paints_;

@@ -27,7 +27,7 @@ class SceneView {
   void copy_to(const Framebuffer& target, int x, int y) const;
 
   Camera camera(const PanelState& state) const;
-  OrbitCamera framed() const { return orbit_of(list_.camera); }  // the film's own camera
+  OrbitCamera framed() const { return orbit_of(film_); }  // the film's own camera
   // Sees the pose at the start whole, from where the film's camera sees the motion.
   OrbitCamera framed_start() const;
   PickView pick_view(const PanelState& state) const;
@@ -49,6 +49,7 @@ class SceneView {
     bool operator==(const Painted& o) const;
   };
   void rebuild(PanelState& state);
+  void build(const PanelState& state);  // the picture at the present time, as its camera sees it
   DrawList decorated(const PanelState& state) const;
 
   GlContext& context_;
@@ -58,6 +59,7 @@ class SceneView {
   ViewOptions options_;
   RenderOptions picture_;
   DrawList list_;  // at the time t_
+  Camera film_;    // the film's own at that time
   double t_ = 0;
   Painted painted_;
   int width_ = 0, height_ = 0;

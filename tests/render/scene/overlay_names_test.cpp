@@ -121,4 +121,54 @@ render.inset = 'kinetic_energy_J'
   }
 }
 
+// The same picture, led to the left by 60 degrees and nearer: what is written goes with it.
+TEST_CASE("names and lengths stand where the camera that is led sees what they are of") {
+  const Scene scene = read_scene_text(R"(structure.kind = 'custom'
+structure.nodes = [{name="A",position=[0,0,0]},{name="B",position=[2,0,0]},{name="C",position=[2,0,1]}]
+structure.rods = [{nodes=["A","B"],mass=1},{nodes=["B","C"],mass=1}]
+solver = {step = 0.25, end_time = 1}
+render = {node_labels = true, scale_bar = true, projection = "orthographic"}
+)",
+                                      "s.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics diagnostics = diagnose(run);
+  const FrameBuilder builder(run.trajectory, film_style(scene, run, diagnostics));
+  CHECK(builder.writes_by_camera());
+  Camera film;
+  const DrawList led = builder.build(0.5, [&](const DrawList& list) {
+    Camera camera = film = list.camera;
+    const Vec3f away = camera.eye - camera.target;
+    camera.eye = camera.target +
+                 Vec3f(0.5f * away.x() - 0.866f * away.y(), 0.866f * away.x() + 0.5f * away.y(), away.z());
+    camera.parallel_height /= 1.25f;
+    return camera;
+  });
+  CHECK(film.eye == builder.build(0.5).camera.eye);
+  CHECK(led.camera.eye != film.eye);
+  const FrameStyle style = film_style(scene, run, diagnostics);
+  int named = 0;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const Vec3 at =
+        builder.upright() *
+        (run.trajectory.positions_at(0.5).segment<3>(3 * static_cast<Index>(n)) - builder.origin());
+    const Vec3f seen = project(led.camera, style.width, style.height, at.cast<float>());
+    const TextLabel* name = label(led, run.trajectory.structure().node_copies[n].name);
+    if (!name) continue;
+    ++named;
+    CHECK(std::hypot(name->x - seen.x(), name->y - seen.y()) < 60);
+  }
+  CHECK(named >= 2);  // one may be left out for want of room
+  // A metre is longer.
+  const auto pixels_per_metre = [&](const DrawList& list) {
+    const TextLabel* text = label(list, " m");
+    REQUIRE(text);
+    const auto bar = std::ranges::find_if(list.lines, [&](const OverlayLine& line) {
+      return line.y0 == line.y1 && std::abs(0.5f * (line.x0 + line.x1) - text->x) < 0.01f;
+    });
+    REQUIRE(bar != list.lines.end());
+    return static_cast<double>(bar->x1 - bar->x0) / std::stod(text->text);
+  };
+  CHECK(pixels_per_metre(led) == Approx(1.25 * pixels_per_metre(builder.build(0.5))).epsilon(1e-3));
+}
+
 }  // namespace overlay_names_test
