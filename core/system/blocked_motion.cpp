@@ -29,15 +29,20 @@ std::string rounded(double value, int digits) {
   return text;
 }
 
+// The longest of what constraints hold.
+double size_of(const System& system) {
+  return std::max(system.all_lengths().maxCoeff(), std::numeric_limits<double>::min());
+}
+
 // Node coordinates with the least |Phi| near q, by Levenberg's and Marquardt's method, without row `left_out`
-// (-1: with all): whether there is a pose.
-bool has_pose(const System& system, double t, VectorXd q, Index left_out) {
-  const double size = std::max(system.all_lengths().maxCoeff(), std::numeric_limits<double>::min());
+// (-1: with all), or with that row moved by `by`: whether there is a pose.
+bool has_pose(const System& system, double t, VectorXd q, Index left_out, double by = 0) {
+  const double size = size_of(system);
   const Index n = q.size(), m = system.all_constraints();
   const auto residual = [&](const VectorXd& x) {
     VectorXd phi(m);
     system.all_constraint_values(t, x, phi);
-    if (left_out >= 0) phi[left_out] = 0;
+    if (left_out >= 0) phi[left_out] = by != 0 ? phi[left_out] + by : 0;
     return phi;
   };
   VectorXd phi = residual(q);
@@ -45,7 +50,7 @@ bool has_pose(const System& system, double t, VectorXd q, Index left_out) {
   for (int it = 0; it < 200; ++it) {
     if (!(phi.norm() > 1e-9 * size)) return phi.allFinite();
     MatrixXd G(system.all_jacobian(q));
-    if (left_out >= 0) G.row(left_out).setZero();
+    if (left_out >= 0 && by == 0) G.row(left_out).setZero();
     const MatrixXd A = G.transpose() * G + damping * MatrixXd::Identity(n, n);
     const VectorXd next = q - Cholesky(A).solve(VectorXd(G.transpose() * phi)), there = residual(next);
     const bool better = there.norm() < phi.norm();
@@ -88,20 +93,33 @@ std::string misfit_warning(const System& system, const ConstVec& q) {
 std::string beyond_reach(const System& system, double t, double h, const ConstVec& q) {
   if (system.coordinates() > most_coordinates || system.drives().empty()) return "";
   const std::vector<int> sources = system.all_sources();
+  const auto row_of = [&](const Drive& drive) {
+    return std::find(sources.begin(), sources.end(), drive.constraint) - sources.begin();
+  };
+  const auto value = [](const Drive& drive, double when) {
+    const double unit = drive.angle ? 180 / std::numbers::pi : 1;
+    return rounded(unit * drive.target(when), 4) + (drive.angle ? " deg" : " m");
+  };
   for (const double soon : {h, 4 * h, 16 * h, 0.02 * t}) {
     if (!(soon > 0) || has_pose(system, t + soon, q, -1)) continue;
     for (const Drive& drive : system.drives()) {
-      const Index row = std::find(sources.begin(), sources.end(), drive.constraint) - sources.begin();
+      const Index row = row_of(drive);
       if (row == std::ssize(sources) || !has_pose(system, t + soon, q, row)) continue;
-      const double unit = drive.angle ? 180 / std::numbers::pi : 1;
-      const auto value = [&](double when) {
-        return rounded(unit * drive.target(when), 4) + (drive.angle ? " deg" : " m");
-      };
-      return "the drive " + drive.name + " asks for " + value(t + soon) + " at t = " + rounded(t + soon, 4) +
-             " s, past what the other constraints reach (it was at " + value(t) + " at t = " + rounded(t, 4) +
-             " s): let it move less far";
+      return "the drive " + drive.name + " asks for " + value(drive, t + soon) +
+             " at t = " + rounded(t + soon, 4) + " s, past what the other constraints reach (it was at " +
+             value(drive, t) + " at t = " + rounded(t, 4) + " s): let it move less far";
     }
     return "";
+  }
+  for (const Drive& drive : system.drives()) {
+    constexpr double next = 1e-4;  // far more than what counts as a pose, and nothing to what is driven
+    const Index row = row_of(drive);
+    if (row == std::ssize(sources) || !drive.target.moves()) continue;
+    for (const double by : {-next, next})
+      if (!has_pose(system, t + h, q, row, by * size_of(system)))
+        return "the drive " + drive.name + " leads to " + value(drive, t + h) +
+               ", the utmost that the other constraints reach (a dead centre), where no step goes on: let it "
+               "end a ten-thousandth of its way before";
   }
   return "";
 }
@@ -118,7 +136,7 @@ std::string held_at_second_order(const System& system, const ConstVec& q) {
   const MatrixXd V = column_complement(G.transpose(), 1e-9), Y = column_complement(G, 1e-9);
   constexpr Index most_free = 60;
   if (V.cols() == 0 || V.cols() > most_free || Y.cols() == 0) return "";
-  const double step = 1e-4 * std::max(system.all_lengths().maxCoeff(), std::numeric_limits<double>::min());
+  const double step = 1e-4 * size_of(system);
   VectorXd here(m), there(m), back(m);
   system.all_constraint_values(0.0, q, here);
   const auto bent = [&](const VectorXd& v) -> VectorXd {
@@ -158,7 +176,7 @@ bool of_no_branch(const System& system, const ConstVec& q, const ConstVec& v) {
   if (system.coordinates() > most_coordinates || m == 0 || !(speed > 0) || system.rheonomic()) return false;
   const MatrixXd Y = column_complement(MatrixXd(system.all_jacobian(q)), 1e-9);
   if (Y.cols() == 0) return false;
-  const double step = 1e-4 * std::max(system.all_lengths().maxCoeff(), std::numeric_limits<double>::min());
+  const double step = 1e-4 * size_of(system);
   const VectorXd way = step / speed * v;
   VectorXd here(m), there(m), back(m);
   system.all_constraint_values(0.0, q, here);

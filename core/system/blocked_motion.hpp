@@ -19,7 +19,8 @@ double misfit_of_rows(const System& system, const ConstVec& q);
 std::string misfit_warning(const System& system, const ConstVec& q);
 
 // "the drive act asks for 2.03 m at t = 0.48 s, ...": where the constraints have no pose soon after the time
-// t unless a drive is left out. h: the step that failed [s].
+// t unless a drive is left out, or where the step leads to the last pose that they have. h: the step that
+// failed [s].
 std::string beyond_reach(const System& system, double t, double h, const ConstVec& q);
 
 // Names of constraints that hold each other in the pose q so that what looks free to first order is not to

@@ -153,6 +153,28 @@ TEST_CASE("a drive past the reach of the rods is named with what it asks for") {
   CHECK(has(slides.message, "the drive act asks for 2.0"));
 }
 
+// A crank of 0.3 m and its rod of 0.7 m reach 1 m in line.
+TEST_CASE("a drive that ends in a dead centre is told so and one that ends just before gets there") {
+  const auto run_to = [](const std::string& end) {
+    return run_scene(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = [0, 0, 0], fixed = true}, "
+        "{name = 'B', position = [0.15, '=0.15*sqrt(3)', 0]}, {name = 'X', position = [0.8, 0, 0], mass = "
+        "0.5}]\n"
+        "rods = [{nodes = ['O', 'B'], mass = 1}, {nodes = ['B', 'X'], mass = 1}]\n"
+        "constraints = [{kind = 'plane', nodes = ['*'], normal = [0, 0, 1]}, "
+        "{kind = 'line', nodes = ['X'], direction = [1, 0, 0]}, {kind = 'coordinate', name = 'act', "
+        "nodes = ['X'], direction = [1, 0, 0], motion = 'smooth', duration = 1, to = " +
+        end + "}]\n[solver]\nstep = 0.01\nend_time = 1.5\n");
+  };
+  const Simulation run = run_to("1");
+  CAPTURE(run.message);
+  CHECK(run.status == RunStatus::failed);
+  CHECK(has(run.message, "the drive act leads to 1 m, the utmost that the other constraints reach"));
+  CHECK_FALSE(has(run.message, "digits"));
+  CHECK_FALSE(has(run.message, "smaller solver.step"));
+  CHECK(run_to("0.9999").status == RunStatus::completed);
+}
+
 // A flat parallelogram has a self-stress and moves in two ways; a chain in line that is held at one end has
 // no self-stress.
 TEST_CASE("what moves to second order is not said to be held") {
