@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <vector>
 
 #include "core/scene/csv_table.hpp"
 #include "core/scene/text_file.hpp"
@@ -13,8 +14,9 @@ namespace unfurl {
 
 namespace {
 
-// Times and values of a CSV table, into the entry's parameters.
-void read_table(TableReader& entry, ParamSet& values, const std::string& folder, SceneNotes& notes) {
+// Times and values of a CSV table, into the entry's parameters, and where they stand.
+void read_table(TableReader& entry, ParamSet& values, const std::string& folder,
+                std::vector<SourceLocation>& places, SceneNotes& notes) {
   static const std::vector<CsvColumn> columns = {{"t", "s", true, true}, {"value", "", true, true}};
   const std::string name = values.text("table");
   if (name.empty()) return;
@@ -24,29 +26,33 @@ void read_table(TableReader& entry, ParamSet& values, const std::string& folder,
   notes.files.insert(file.path);
   if (!file.error.empty()) return entry.problem("table", file.error);
   std::vector<double> times, sizes;
-  for (const auto& row : read_csv(file.text, file.path, columns, notes)) {
+  const auto rows = read_csv(file.text, file.path, columns, notes);
+  for (const auto& row : rows) {
     if (row.numbers.size() < 2) continue;  // noted
+    places.push_back(row.where);
     times.push_back(row.numbers.at("t"));
     sizes.push_back(row.numbers.at("value"));
   }
-  if (times.size() < 2) entry.problem("table", "must have at least two rows");
+  if (rows.size() < 2) entry.problem("table", "must have at least two rows");
   values.set("times", std::move(times));
   values.set("values", std::move(sizes));
   values.set("table", std::string());
 }
 
-// `jumps`: a time may stand twice.
-void check_table(TableReader& entry, const ParamSet& values, bool jumps) {
+// `jumps`: a time may stand twice; `rows`: where the times stand, if not in the scene.
+void check_table(TableReader& entry, const ParamSet& values, bool jumps,
+                 const std::vector<SourceLocation>& rows, SceneNotes& notes) {
   const auto &times = values.vector("times"), &sizes = values.vector("values");
   if (times.size() != sizes.size())
     entry.problem("values", "must be as many as times: " + std::to_string(times.size()) + "; got " +
                                 std::to_string(sizes.size()));
-  if (times.size() == 1) entry.problem("times", "must be at least two");
+  if (times.size() == 1 && rows.empty()) entry.problem("times", "must be at least two");
+  const char* const what =
+      jumps ? "must ascend; a time may stand twice, the load jumps there" : "must ascend";
   for (std::size_t i = 1; i < times.size(); ++i)
     if (!(times[i] > times[i - 1]) &&
         !(jumps && times[i] == times[i - 1] && !(i > 1 && times[i - 2] == times[i])))
-      return entry.problem(
-          "times", jumps ? "must ascend; a time may stand twice, the load jumps there" : "must ascend");
+      return rows.empty() ? entry.problem("times", what) : notes.add(rows[i], "t", what);
 }
 
 void check_motion(TableReader& entry, const ParamSet& values) {
@@ -194,8 +200,9 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
   element.values = entry.read(kind->params());
   if (element.values.has("table")) {
     element.table = element.values.text("table");
-    read_table(entry, element.values, folder, notes);
-    check_table(entry, element.values, may_jump(element.kind));
+    std::vector<SourceLocation> rows;
+    read_table(entry, element.values, folder, rows, notes);
+    check_table(entry, element.values, may_jump(element.kind), rows, notes);
   }
   if (element.values.has("motion")) check_motion(entry, element.values);
   entry.warn_idle(kind->params(), element.values);

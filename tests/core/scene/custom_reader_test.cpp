@@ -259,4 +259,22 @@ TEST_CASE("files outside the scene's folder are not read") {
         "s.toml:3:14: structure.nodes_file: a scene that is not a file cannot name other files");
 }
 
+TEST_CASE("what is wrong with a table over time is told by its file and row") {
+  const Folder folder;
+  const std::string scene = folder.write("s.toml",
+                                         "[structure]\nkind = 'pendulum'\n[[forces]]\nkind = "
+                                         "'load_over_time'\nnodes = ['bob']\nforce = [1, 0, 0]\n"
+                                         "table = 'f.csv'\n");
+  const auto told = [&](const std::string& rows) {
+    const std::string file = folder.write("f.csv", "# of a test\nt,value\n" + rows),
+                      error = file_error_of(scene);
+    return error.starts_with(file) ? error.substr(file.size()) : error;
+  };
+  CHECK(told("0,0\n1,0\n1,2\n2,1\n") == "");  // a jump
+  CHECK(told("0,0\n1,0\n\n0.5,1\n") == ":6:1: t: must ascend; a time may stand twice, the load jumps there");
+  CHECK(told("0,0\n1,0\n1,2\n1,3\n") == ":6:1: t: must ascend; a time may stand twice, the load jumps there");
+  CHECK(told("0,0\n1,x\n") == ":4:1: value: must be a finite number; got 'x'");
+  CHECK(told("0,0\n") == scene + ":7:9: forces[0].table: must have at least two rows");
+}
+
 }  // namespace custom_reader_test
