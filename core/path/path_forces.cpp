@@ -58,6 +58,15 @@ bool has_no_axis(const Measure& measure) {
                              [](const MeasureTerm& term) { return has_no_axis(term.measure); });
 }
 
+// "sync" holds ...: what of it the path does not know.
+std::string unknown_measure(const std::string& name, const char* acts, const Measure& measure) {
+  if (holds(known_measures, measure.kind)) return "";
+  return in_quotes(name) + " " + acts + " " +
+         (measure.kind == MeasureKind::dihedral ? "an angle between planes"
+                                                : "a sum of measures (as gears, racks and cables do)") +
+         ", which is not known to the path: coordinates, lengths, angles and the fold angle are";
+}
+
 // So fast that forces at rest are below the rounding of what dampers give; products with it are exact.
 constexpr double no_rest = 0x1p100;  // [m kg^1/2 / s]
 
@@ -72,19 +81,17 @@ std::string unknown_to_path(const Structure& structure) {
     if (force.smoothing > 0) return "a cable begins to pull smoothly";
     if (!holds(known_forces, force.kind)) return kinds("a force", force.kind);
     if (std::string motor = unknown_motor(force); !motor.empty()) return motor;
-    if (!holds(known_measures, force.measure.kind))
-      return "a force acts on a measure that the path does not know";
+    if (std::string why = unknown_measure(force.name, "acts on", force.measure); !why.empty()) return why;
   }
   for (const Constraint& constraint : structure.constraints) {
     if (!holds(known_constraints, constraint.kind)) return kinds("a constraint", constraint.kind);
-    if (!holds(known_measures, constraint.measure.kind))
-      return "a constraint holds a measure that the path does not know";
+    if (std::string why = unknown_measure(constraint.name, "holds", constraint.measure); !why.empty())
+      return why;
   }
   for (const Stop& stop : structure.stops)
     if (stop.reeled) return "a cable that does not stretch is not known to the path";
   for (const Stop& stop : structure.stops)
-    if (!holds(known_measures, stop.measure.kind))
-      return "a stop bounds a measure that the path does not know";
+    if (std::string why = unknown_measure(stop.name, "bounds", stop.measure); !why.empty()) return why;
   // Kinds that are made of something else than the structure's lists.
   SparseRows mass(3 * std::ssize(structure.nodes), 3 * std::ssize(structure.nodes));
   for (const ForceKind& kind : force_kinds())

@@ -412,6 +412,16 @@ TEST_CASE("what the path does not know is refused, and auto says why it took the
   CHECK(unknown_to_path(build_model(scene_with("four_bar", {}))->structure).empty());
 }
 
+TEST_CASE("what holds a measure that the path does not know is named with it") {
+  for (const auto& [kind, words] : {std::pair(MeasureKind::dihedral, "'sync' holds an angle between planes"),
+                                    std::pair(MeasureKind::combination, "'sync' holds a sum of measures")}) {
+    Structure structure = build_model(scene_with("four_bar", {}))->structure;
+    structure.constraints.push_back({"measure", "sync", {}, {}, 0.0, {}, {}});
+    structure.constraints.back().measure.kind = kind;
+    CHECK_THAT(unknown_to_path(structure), Catch::StartsWith(words));
+  }
+}
+
 // A triangle on a linkage: its corners are hinges that cannot turn. What friction they have does no work and
 // no rod feels it.
 TEST_CASE("friction in a hinge that cannot turn does not slip on the path") {
