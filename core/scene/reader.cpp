@@ -281,7 +281,15 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   scene.variables = std::move(worked_out.variables);
   scene.worked_out = std::move(worked_out.keys);
   std::vector<SceneProblem> told_already;
-  apply_overrides_and_expand(own, {}, told_already);
+  WorkedOut as_written;
+  apply_overrides_and_expand(own, {}, told_already, &as_written);
+  for (const auto& [variable, where] : worked_out.idle) {
+    const std::string key = "variables." + variable;
+    // What is idle since another one was replaced by a number is as it was meant.
+    if (as_written.idle.contains(variable) ||
+        std::ranges::any_of(overrides, [&](const auto& given) { return given.starts_with(key + "="); }))
+      notes.warnings.push_back({where, key, "does nothing: nothing in the scene is worked out of it"});
+  }
   scene.name = std::filesystem::path(name).stem().string();
   TableReader root(&tree, "", tree.where, notes);
   read_title(root, tree, own, scene);

@@ -2,6 +2,7 @@
 #include "core/scene/variables.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -43,6 +44,7 @@ class Expansion {
       for (const auto& [name, value] : table->entries) {
         below_.erase(name);
         reading_ = name;
+        places_[name] = value.where;
         read_variable(name, value);
       }
       reading_.clear();
@@ -58,6 +60,20 @@ class Expansion {
 
   const Variables& variables() const { return variables_; }
   const std::set<std::string>& keys() const { return keys_; }
+
+  // Variables that nothing but other such ones is worked out of, and where they stand.
+  std::map<std::string, SourceLocation> idle() const {
+    std::map<std::string, SourceLocation> out = places_;
+    std::vector<std::string> open{""};  // the scene itself
+    while (!open.empty()) {
+      const auto used = uses_.find(open.back());
+      open.pop_back();
+      if (used == uses_.end()) continue;
+      for (const std::string& name : used->second)
+        if (out.erase(name) > 0) open.push_back(name);
+    }
+    return out;
+  }
 
   void expand(TomlTree& tree, const std::string& key) {
     if (key == "title") return;  // its braces are parameters of the structure (title.hpp)
@@ -96,6 +112,8 @@ class Expansion {
   }
 
   std::optional<double> evaluated(const TomlTree& at, std::string_view text, const std::string& key) {
+    if (!reading_.empty() || texts_.insert(std::string(text)).second)
+      for (std::string& word : words_of(std::string(text))) uses_[reading_].insert(std::move(word));
     try {
       return evaluate(text, variables_);
     } catch (const ExpressionError& error) {
@@ -130,7 +148,7 @@ class Expansion {
   static std::vector<std::string> words_of(const std::string& expression) {
     std::vector<std::string> words(1);
     for (const char c : expression) {
-      if (is_variable_name(words.back() + c))
+      if (std::isalnum(static_cast<unsigned char>(c)) || c == '_')
         words.back() += c;
       else if (!words.back().empty())
         words.emplace_back();
@@ -262,6 +280,9 @@ class Expansion {
   std::vector<SceneProblem>& problems_;
   Variables variables_;
   std::set<std::string> keys_;
+  std::map<std::string, SourceLocation> places_;               // of the variables
+  std::map<std::string, std::set<std::string>> uses_;          // by each variable, and by the scene ("")
+  std::set<std::string> texts_;                                // that were looked through
   std::map<std::string, const TomlTree*, std::less<>> below_;  // variables that are not worked out yet
   std::string reading_;                                        // the one that is
   std::set<std::string> wrong_;                                // variables that are there, but have no value
@@ -316,7 +337,7 @@ bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& 
     refuse_all_variables(problems);  // they are worked out by now, and out of the tree
   expansion.leave_braces();
   expansion.expand(root, "");
-  if (worked_out) worked_out->keys = expansion.keys();
+  if (worked_out) worked_out->keys = expansion.keys(), worked_out->idle = expansion.idle();
   return problems.size() == before;
 }
 

@@ -20,13 +20,15 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/scene_error.hpp"
 #include "core/scene/toml_tree.hpp"
 
 namespace unfurl {
 
 struct WorkedOut {
   std::map<std::string, double> variables;
-  std::set<std::string> keys;  // dotted keys whose values come of an expression or of braces
+  std::set<std::string> keys;                  // dotted keys whose values come of an expression or of braces
+  std::map<std::string, SourceLocation> idle;  // variables of which nothing in the scene is worked out
 };
 
 // Overrides of the variables are applied first ("variables.n=20", which must be there), then the variables

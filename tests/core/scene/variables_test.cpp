@@ -219,6 +219,9 @@ TEST_CASE("mistakes in variables and repeats have a place") {
   const std::string cycle = "'k' is worked out of 'radius' in its turn: give one of them a number";
   CHECK(from("2*k", "k = \"=radius/2\"").find(cycle) != std::string::npos);
   CHECK(from("2*k", "k = \"=m\"\nm = \"=1 + radius\"").find(cycle) != std::string::npos);
+  // Also of a name that begins as a constant does.
+  CHECK(mistakes(with(polygon, "n = 5", "n = '=5 + pitch'\npitch = '=sine'\nsine = '=n'"))
+            .find("'pitch' is worked out of 'n' in its turn") != std::string::npos);
   CHECK(from("2*k", "k = \"=m\"\nm = \"=k + radius_2\"\nradius_2 = 1").find("'k' stands below") !=
         std::string::npos);
   // One mistake in an entry that stands many times is told once.
@@ -244,6 +247,26 @@ TEST_CASE("a variable that is no finite number is refused by its name") {
     CHECK(said.find("variables.radius") != std::string::npos);
     CHECK(said.find("must be a finite number or an expression") != std::string::npos);
   }
+}
+
+TEST_CASE("a variable of which nothing is worked out is warned of and one that others replace is not") {
+  const std::string idle = with(polygon, "n = 5", "n = 5\npitch = 1\nhalf = '=pitch/2'"),
+                    used = idle + "[[loads]]\nnodes = ['top']\nforce = ['=half/2', 0, 0]\n";
+  const auto warned = [](const std::string& text, const std::vector<std::string>& overrides = {}) {
+    std::string all;
+    for (const SceneProblem& warning : read(text, overrides).warnings)
+      if (warning.key.starts_with("variables."))
+        all += std::to_string(warning.where.line) + " " + warning.key.substr(10) + ", ";
+    return all;
+  };
+  CHECK(warned(polygon) == "");
+  CHECK(warned(idle) == "4 half, 3 pitch, ");  // what only an idle one is worked out of is idle, too
+  CHECK(warned(used) == "");
+  CHECK(warned(with(idle, "radius = \"=1", "radius = \"=0*half + 1")) == "");
+  // The same expression of a variable and of what is used.
+  CHECK(warned(with(used, "force = ['=half/2'", "force = ['=pitch/2'")) == "4 half, ");
+  CHECK(warned(used, {"variables.half=2"}) == "");
+  CHECK(warned(used, {"variables.half=2", "variables.pitch=3"}) == "0 pitch, ");
 }
 
 }  // namespace variables_test
