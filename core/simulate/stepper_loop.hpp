@@ -219,7 +219,8 @@ class Stepper::Loop {
 
   bool fail(const std::string& why, bool in_a_step = false) {
     run_.status = RunStatus::failed;
-    const bool at_stop = in_a_step && !run_.events.empty() && run_.events.back().kind == "contact" &&
+    const bool at_stop = in_a_step && !run_.events.empty() &&
+                         (run_.events.back().kind == "contact" || run_.events.back().energy_lost > 0) &&
                          run_.events.back().t == now().t && singular_at_end(run_.trajectory);
     run_.message =
         "at t = " + seconds(now().t) + ": " + why +
@@ -372,8 +373,9 @@ class Stepper::Loop {
     for (const auto& [stop, energy_lost, held] : change.impacts) {
       if (held && sides_.active(stop)) continue;  // what held takes up speed: a drive's work
       Event event = sides_.events(stop, change.state.t).front();
-      if (!sides_.active(stop)) event.name = "stop " + event.element;
-      event.kind = "contact";
+      const bool cable = sides_.stops()[stop].reeled;  // that does not stretch
+      if (!sides_.active(stop)) event.name = cable ? event.element + " pulls" : "stop " + event.element;
+      event.kind = cable ? "taut" : "contact";
       event.energy_lost = energy_lost * run_.trajectory.structure().sectors;
       run_.events.push_back(std::move(event));
     }

@@ -125,7 +125,8 @@ std::optional<ReferenceMotion> tightest(ReferenceSolver& solver, double end, dou
 
 namespace {
 
-// Cables that stretch and motors change their law there: a bend, that of the first state is known.
+// Cables that stretch and motors change their law there: a bend, that of the first state is known. A jerk is
+// none.
 constexpr std::array bend_kinds{"taut", "slack", "saturated", "unsaturated"};
 constexpr std::array break_kinds{"contact", "free", "slip", "stick", "reversal"};
 
@@ -142,7 +143,8 @@ JudgedSpan judged_span(const Simulation& run) {
     if (event.name == "deployed") return {before_singular * event.t, "the deployed pose"};
     if (event.name.find("stop ") != std::string::npos)
       return {before_singular * event.t, "the first end stop"};
-    if (is_one_of(break_kinds, event) || (is_one_of(bend_kinds, event) && event.t > start))
+    if (is_one_of(break_kinds, event) ||
+        (is_one_of(bend_kinds, event) && (event.t > start || event.energy_lost > 0)))
       return {before_singular * event.t, "the first time that " + event.name};
   }
   return {run.options.end_time};

@@ -148,4 +148,31 @@ TEST_CASE("a cable that is just straight at the start pulls from there on howeve
   }
 }
 
+// 2 kg run into a cable that does not stretch and is drawn in, and into that of a winch whose drum stands: at
+// 1 + 3 t = 1.3 - 0.5 t, and by the drum's path behind 0.1 s. Both jerks are those of cables, not of stops.
+TEST_CASE("cables that do not stretch draw taut by that kind of event") {
+  const Simulation run = testing::run_scene(
+      "[structure]\nkind = \"custom\"\nnodes = [{name = \"X\", position = [0, 0, 0], fixed = true}, "
+      "{name = \"M\", position = [1, 0, 0], mass = 2, velocity = [3, 0, 0]}, {name = \"N\", position = [1, "
+      "1, "
+      "0], mass = 2, velocity = [3, 0, 0]}, {name = \"Z\", position = [0, 1, 0], fixed = true}]\n"
+      "[[constraints]]\nkind = \"line\"\nnodes = [\"M\", \"N\"]\ndirection = [1, 0, 0]\n"
+      "[[constraints]]\nkind = \"cable\"\nname = \"c\"\nnodes = [\"X\", \"M\"]\nlength = 1.3\n"
+      "motion = \"rate\"\nrate = -0.5\n"
+      "[[forces]]\nkind = \"winch\"\nname = \"w\"\nnodes = [\"Z\", \"N\"]\nlength = 1.3\nstall_torque = "
+      "1e-9\n"
+      "no_load_speed = 1e9\ndrum_radius = 0.1\ngear_ratio = 2\ninertia = 1e-3\nvoltage = 0\n"
+      "[solver]\nstep = 0.01\nstages = 4\nend_time = 0.5\n");
+  REQUIRE(run.events.size() >= 2);
+  CHECK(run.events[0].element == "c");
+  CHECK(run.events[0].t == Approx(0.3 / 3.5).epsilon(1e-9));
+  CHECK(run.events[1].element == "w cable");
+  CHECK(run.events[1].t == Approx(0.1).epsilon(1e-6));
+  for (const Event& event : run.events) {
+    INFO(event.name);
+    CHECK(event.kind == (event.name.ends_with(" pulls") ? "taut" : "slack"));
+  }
+  CHECK(run.events[0].energy_lost > 0);
+}
+
 }  // namespace drawn_cable_test

@@ -196,7 +196,7 @@ at_deployed = "latch"
   // Paid out it is caught there, with its 0.02 J.
   const Simulation caught = at_rate("0.2");
   check(caught, {{"reel pulls", 0.0}, {"deployed", 0.7}, {"reel pulls", 0.7}, {"latched", 0.7}});
-  CHECK(caught.events[2].kind == "contact");
+  CHECK(caught.events[2].kind == "taut");
   CHECK(caught.events[2].energy_lost == Approx(0.02).epsilon(1e-9));
 }
 
