@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/forces/spring.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/structure/measure.hpp"
 
@@ -201,6 +202,13 @@ std::string onto_its_axis(const Structure& structure, const std::string& name, c
   return "";
 }
 
+// That a winch may wind up all of an elastic cable within two steps: what is left of it off the drum gets as
+// stiff as there is force.
+bool winds_up(const Force& cable, double t, double h, const VectorXd& q, const VectorXd& v) {
+  const SpringLaw law = spring_law(cable, t, q.data());
+  return law.drum >= 0 && !(cable.axial_stiffness / law.stiffness - 2 * h * v[law.drum] > at_it);
+}
+
 }  // namespace
 
 std::string at_its_end(const Structure& structure, const System& system, const State& state, double h) {
@@ -226,12 +234,14 @@ std::string at_its_end(const Structure& structure, const System& system, const S
     for (const MeasureTerm& term : c.measure.terms)
       if (std::string words = ended(c, term.measure); !words.empty()) return words;
   }
-  for (const Force& f : structure.forces)
+  for (const Force& f : structure.forces) {
+    if (winds_up(f, state.t, h, q, v)) return held_through(f.name, false);
     if (f.measure.kind == MeasureKind::angle && acts_through(f) && ends(f.measure))
       return "the rods of " + f.name +
              " come to lie in line, where an angle without an axis turns back and the torque on it jumps: "
              "give "
              "it an axis, or make solver.step smaller";
+  }
   return "";
 }
 

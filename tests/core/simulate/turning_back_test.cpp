@@ -308,6 +308,26 @@ end_time = 2
   CHECK(run_scene(tube, {"solver.end_time=0.4"}).status == RunStatus::completed);
 }
 
+// A motor winds up 0.5 m of cable, which pulls its load along: nothing else can end such a run.
+TEST_CASE("an elastic cable that a winch winds up to its end is named") {
+  for (const char* stiffness : {"5000", "0"}) {
+    const Simulation run = testing::run_scene(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'X', position = [0, 0, 0], fixed = true}, {name = "
+        "'M', "
+        "position = [0.5, 0, 0], mass = 2}]\n[[constraints]]\nkind = 'line'\nnodes = ['M']\ndirection = [1, "
+        "0, "
+        "0]\n[[forces]]\nkind = 'winch'\nname = 'w'\nnodes = ['X', 'M']\nstall_torque = 0.1\nno_load_speed = "
+        "6000\ndrum_radius = 0.1\ngear_ratio = 20\ninertia = 1e-4\n[solver]\nstep = 0.01\nstages = "
+        "4\nend_time = "
+        "5\n",
+        {std::string("forces[0].axial_stiffness=") + stiffness,
+         std::string("forces[0].damping=") + (stiffness[0] == '0' ? "0" : "20")});
+    INFO(run.message);
+    CHECK(run.status == RunStatus::failed);
+    CHECK(run.message.find("a length of w cable falls to 0") != std::string::npos);
+  }
+}
+
 TEST_CASE("a stop beyond whose limit an angle turns back within a step is told of") {
   const Vec3 along(1.3, 0, 0);
   const auto said = [&](double min, double max, double side, MeasureKind kind = MeasureKind::angle) {
