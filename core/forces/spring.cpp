@@ -83,9 +83,13 @@ class Springs final : public ForceBlock {
     Gradient g(size_);
     double sum = straight_.dissipation(q, v);
     for (const Spring& spring : springs_) {
-      if ((!(spring.law.damping > 0) && !spring.pulleys) || lets_go(spring.law)) continue;
+      if (!(spring.law.damping > 0) && !spring.pulleys) continue;
       const double s = spring.measure.value_and_gradient(q, v, g.data(), at, spring.followed);
       const SpringLaw law = spring_law(spring.law, at.t, q);
+      if (lets_go(spring.law)) {
+        sum -= law.stiffness_rate * pull_of(spring.law, s - law.rest).energy;
+        continue;
+      }
       const double rate = spring.measure.rate(g.data(), v), stretching = rate - law.rest_rate;
       const double n = spring_pull(spring.law, law, s, stretching).tension;
       const double elastic = law.stiffness * pull_of(spring.law, s - law.rest).elastic;
@@ -139,8 +143,8 @@ class Springs final : public ForceBlock {
 
  private:
   // Slack while it is still stretched, as its damper would push: it gives no force, and what it has stored is
-  // gone by and by as it comes to its length. (Of what is reeled in the winch takes a part of that.)
-  static bool lets_go(const Force& law) { return law.slack && law.damping > 0 && !law.unstressed.moves(); }
+  // gone by and by as it comes to its length; of what is reeled less what its winch gives and takes.
+  static bool lets_go(const Force& law) { return law.slack && law.damping > 0; }
 
   static double potential_of(const Spring& spring, const Moment& at, const double* q) {
     const SpringLaw law = spring_law(spring.law, at.t, q);
