@@ -22,6 +22,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// Beside a folder that need not be there, as a command line takes it; "exported" in those without a name.
+std::string name_beside(const std::string& folder) {
+  fs::path name = fs::path(folder).lexically_normal();
+  if (!name.has_filename()) name = name.parent_path();  // "out/"
+  if (!name.has_filename() || name.filename() == "." || name.filename() == "..") name /= "exported";
+  return (name.string().starts_with('-') ? "./" : "") + name.string();
+}
+
 // OUTPUT.toml, or OUTPUT-2.toml, ...: the first that is not there or holds this very text.
 std::string free_name(const std::string& output, const std::string& text) {
   std::error_code unknown;
@@ -79,15 +87,20 @@ std::vector<std::string> words_behind(const ExportKind& kind, const std::string&
 
 std::string exported_scene(const SceneDocument& document, const std::string& output, bool in_file) {
   if (in_file) return document.path;
-  return free_name(document.path.empty() ? output : fs::path(document.path).replace_extension().string(),
-                   *document.text);
+  return free_name(
+      document.path.empty() ? name_beside(output) : fs::path(document.path).replace_extension().string(),
+      *document.text);
 }
 
 std::vector<std::string> export_words(const SceneDocument& document, const ExportKind& kind,
                                       const std::string& output, bool replace) {
   const bool in_file = !document.path.empty() && own_file(document, nullptr) == OwnFile::same;
   const std::string scene = exported_scene(document, output, in_file);
-  if (!in_file) write_file_atomically(scene, *document.text);
+  if (!in_file) {
+    if (const fs::path folder = fs::path(scene).parent_path(); !folder.empty())
+      fs::create_directories(folder);
+    write_file_atomically(scene, *document.text);
+  }
   std::vector<std::string> words{std::string(kind.verb), scene};
   for (std::string& word : words_behind(kind, output, replace)) words.push_back(std::move(word));
   for (std::string& text : overrides_of(document)) {

@@ -64,6 +64,20 @@ TEST_CASE("the command line of a scene without a file names the file that an exp
   CHECK(study_command({}, document).starts_with("unfurl study untitled.toml "));
 }
 
+TEST_CASE("a scene without a file gets one beside its output, however that is written") {
+  const ScratchDirectory scratch;
+  const std::string here = scratch / "";
+  const SceneDocument document = blank_document();
+  for (const auto& [output, file] : {std::pair("new/", "new.toml"), {"sub/deep/dir", "sub/deep/dir.toml"}}) {
+    CAPTURE(output);
+    const std::string written = export_words(document, export_kinds()[2], here + output)[1];
+    CHECK(written == std::filesystem::path(here + file).lexically_normal());
+    CHECK(file_text(written) == *document.text);
+  }
+  CHECK(exported_scene(document, "-x", false) == "./-x.toml");
+  CHECK(exported_scene(document, ".", false) == "./exported.toml");
+}
+
 TEST_CASE("what is shown is exported, whatever its file holds by now") {
   const ScratchDirectory scratch;
   const std::string text = *blank_document().text, file = scratch.write("mine.toml", text);
