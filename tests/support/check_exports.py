@@ -125,6 +125,38 @@ pixels = np.array(re.findall(r"at pixel ([-0-9.]+), ([-0-9.]+)", dom(f"{out}/mas
 assert len(pixels) == 20 and pixels.min() > 0 and pixels[:, 1].max() < 0.66 * 700, pixels
 print("html: all of a mast is in the picture")
 
+# What is no rod, of every kind: the page has them in its legend and goes on.
+with open(f"{out}/lines.toml", "w") as scene:
+    scene.write('''[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], mass = 1},
+  {name = "C", position = [2, 0, 0], mass = 1}, {name = "D", position = [0, 0, 1], fixed = true}]
+[[constraints]]
+kind = "telescope"
+nodes = ["A", "B", "C"]
+[[forces]]
+kind = "spring"
+nodes = ["B", "D"]
+stiffness = 10
+[[forces]]
+kind = "cable"
+nodes = ["C", "D"]
+axial_stiffness = 100
+[[forces]]
+kind = "cable"
+nodes = ["B", "D"]
+axial_stiffness = 100
+smoothing = 0.01
+[solver]
+end_time = 0.1
+''')
+subprocess.run([sys.argv[1], "run", f"{out}/lines.toml", "-o", f"{out}/lines", "--quiet", "--export", "html"], check=True)
+page = dom(f"{out}/lines/viewer.html", 0.05)
+assert len(re.findall(r"at pixel", page)) == 4, page[-2000:]
+for group in ("spring", "cable", "net", "actuator"):
+    assert re.search(rf"<span[^>]*>[^<]*(<[^>]*>)*{group}\b", page) or f"{group}</" in page, group
+print("html: springs, cables, nets and actuators")
+
 if len(sys.argv) > 2:
     script = (
         "const v=require(process.argv[1]+'/node_modules/gltf-validator'),fs=require('fs');"
