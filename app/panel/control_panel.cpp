@@ -11,6 +11,7 @@
 
 #include "app/panel/actions.hpp"
 #include "app/panel/panes/panes.hpp"
+#include "core/export/atomic_file.hpp"
 #include "core/text/nearest_name.hpp"
 #include "render/gl/graphics_error.hpp"
 
@@ -55,7 +56,7 @@ ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOpti
     if (clipboard.get)
       clipboard.get = [this, get = options_.clipboard.get] {
         std::string text = get();
-        recorder_->note_clipboard(text);
+        if (recorder_) recorder_->note_clipboard(text);
         return text;
       };
   }
@@ -332,10 +333,23 @@ bool ControlPanel::frame(double seconds, bool visible) {
   settling_ = std::max(0, settling_ - 1);
   const bool more = settling_ > 0 || !events_.empty() || state().playback.playing || state().wiggled >= 0 ||
                     host_->typing() || (visible && view_.coarse());
-  if (recorder_)
-    recorder_->frame(seconds, visible, session_,
-                     !more && visible ? std::optional(picture_->read()) : std::nullopt);
-  return more;
+  return record(seconds, visible, more) || more;
+}
+
+// Where the session cannot be recorded any further, its work goes on. Returns whether there is that to say.
+bool ControlPanel::record(double seconds, bool visible, bool more) {
+  if (!recorder_) return false;
+  const auto picture = !more && visible ? std::optional(picture_->read()) : std::nullopt;
+  try {
+    recorder_->frame(seconds, visible, session_, picture);
+    return false;
+  } catch (const FileError& error) {
+    state().message = error.what();
+    record_failure_ = std::current_exception();
+  }
+  recorder_.reset();
+  keep_drawing(true);
+  return true;
 }
 
 }  // namespace unfurl

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <deque>
+#include <exception>
 #include <functional>
 #include <memory>
 
@@ -69,6 +70,10 @@ class ControlPanel {
   LiveSession& session() { return session_; }
   double painted() const { return painted_; }  // so far, parts that were painted again again counted [pixels]
   long view_paints() const { return view_.paints(); }
+  // Why the session that was asked for is not recorded to its end.
+  void throw_if_not_recorded() const {
+    if (record_failure_) std::rethrow_exception(record_failure_);
+  }
   OrbitCamera framed() const { return view_.framed(); }  // the film's own camera
 
  private:
@@ -80,6 +85,7 @@ class ControlPanel {
   bool coarse_view(double seconds);
   void paint(bool coarse);
   void survive(const std::function<void()>& part);
+  bool record(double seconds, bool visible, bool more);
   // Runs a part of a frame and adds its time to `sum`.
   template <class Part>
   void timed(double& sum, const Part& part);
@@ -102,6 +108,7 @@ class ControlPanel {
   int settling_ = 3;  // frames until new widgets have their sizes
   FrameTimes times_;
   std::unique_ptr<SessionRecorder> recorder_;  // null: nothing is recorded
+  std::exception_ptr record_failure_;
 };
 
 }  // namespace unfurl

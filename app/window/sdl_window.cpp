@@ -220,6 +220,7 @@ class Host {
     }
     remember();
     throw_if_interrupted();
+    panel_->throw_if_not_recorded();
     return exit_ok;
   }
 

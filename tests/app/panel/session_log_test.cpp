@@ -2,10 +2,15 @@
 // What a person did, played again: the same states and the same pixels.
 #include "app/panel/session_log.hpp"
 
+#include <signal.h>
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/export/atomic_file.hpp"
 #include "tests/app/panel/panel_driver.hpp"
 #include "tests/app/run_program.hpp"
 
@@ -174,6 +179,29 @@ TEST_CASE("every key has a name of its own") {
   for (int i = 0; i < static_cast<int>(Key::count); ++i)
     CHECK(key_named(name_of(static_cast<Key>(i))) == static_cast<Key>(i));
   CHECK(key_named("nonsense") == Key::none);
+}
+
+TEST_CASE("a session that cannot be recorded any further goes on and says so") {
+  const ScratchDirectory scratch;
+  const std::string file = scratch / "session.jsonl";
+  PanelOptions options = PanelDriver::small();
+  options.record = file;
+  PanelDriver driver(options);
+  driver.panel().throw_if_not_recorded();
+  // A limit on files as long as this one, in place of a disk that is full.
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const auto handled = ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit full{std::filesystem::file_size(file), before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &full);
+  driver.frame();
+  CHECK(driver.state().message.find("cannot be recorded any further") != std::string::npos);
+  driver.drag("structure.post_length", 0.5, 0.7);
+  driver.settle();
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, handled);
+  CHECK(is_edited(driver.state().history.now()));
+  CHECK_THROWS_AS(driver.panel().throw_if_not_recorded(), FileError);
 }
 
 }  // namespace session_log_test
