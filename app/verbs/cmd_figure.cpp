@@ -3,12 +3,15 @@
 // into a directory. Beside each its numbers and its caption.
 #include <algorithm>
 #include <iostream>
+#include <limits>
 
 #include "app/command.hpp"
 #include "app/output/interrupt.hpp"
 #include "app/output/output_directory.hpp"
 #include "app/verbs/run_figures.hpp"
 #include "app/verbs/scene_run.hpp"
+#include "core/diagnostics/jacobian_spectrum.hpp"
+#include "core/system/self_stress.hpp"
 #include "core/text/nearest_name.hpp"
 #include "render/plot/figure_data.hpp"
 
@@ -42,10 +45,23 @@ bool single_file(const std::filesystem::path& output, const Arguments& arguments
   return false;
 }
 
+// Of figures whose price is a cube of the size.
+std::string too_large(const FigureKind& kind, const System& system) {
+  const Index most = kind.name == "jacobian"      ? max_spectrum_size
+                     : kind.name == "self_stress" ? max_listed_coordinates
+                                                  : std::numeric_limits<Index>::max();
+  const Index size = kind.name == "jacobian" ? std::max(system.coordinates(), system.all_constraints())
+                                             : system.coordinates();
+  if (size <= most) return "";
+  return ": it is drawn up to " + std::to_string(most) + " coordinates" +
+         (kind.name == "jacobian" ? " and constraints" : "") + ", and the scene has " + std::to_string(size);
+}
+
 void require_data(const FigureKind& kind, const Scene& scene, const Simulation& run,
                   const Diagnostics& diagnostics) {
   if (!kind.applies(run, diagnostics))
-    throw UsageError("the scene " + scene.name + " has no data for the figure " + in_quotes(kind.name));
+    throw UsageError("the scene " + scene.name + " has no data for the figure " + in_quotes(kind.name) +
+                     too_large(kind, run.trajectory.model().system));
 }
 
 // With what is written beside it.
