@@ -11,7 +11,6 @@
 #include "core/structure/upright.hpp"
 #include "render/plot/text_metrics.hpp"
 #include "render/scene/frame_overlay.hpp"
-#include "render/scene/pose_times.hpp"
 
 namespace unfurl {
 namespace {
@@ -68,10 +67,12 @@ FrameBuilder::FrameBuilder(const Trajectory& trajectory, FrameStyle style)
   if (options.colour_by != "group" && style_.run && style_.diagnostics)
     field_ = std::make_unique<RodField>(
         rod_field(options.colour_by, options.colour_range, *style_.run, *style_.diagnostics));
-  choose_origin();
-  prepare_still(prepare_camera());
-  prepare_ghosts();
-  prepare_trails();
+  PosedMoments moments = posed_moments(trajectory_);
+  choose_origin(moments.poses);
+  prepare_ghosts(moments);
+  prepare_trails(moments);
+  prepare_still(prepare_camera(std::move(moments)));
+  thin_trails();
 }
 FrameBuilder::~FrameBuilder() = default;
 FrameBuilder::FrameBuilder(FrameBuilder&&) noexcept = default;
@@ -83,12 +84,10 @@ VectorXd FrameBuilder::placed(VectorXd whole) const {
 }
 
 // All that is drawn is in single precision.
-void FrameBuilder::choose_origin() {
-  const MotionBounds bounds = motion_bounds([this](const std::function<void(const Vec3&)>& visit) {
-    for (std::size_t i = 0; i < trajectory_.size(); ++i) {
-      const VectorXd whole = trajectory_.positions(i);
+void FrameBuilder::choose_origin(const std::vector<VectorXd>& poses) {
+  const MotionBounds bounds = motion_bounds([&](const std::function<void(const Vec3&)>& visit) {
+    for (const VectorXd& whole : poses)
       for (Index k = 0; k < whole.size() / 3; ++k) visit(node(whole, static_cast<int>(k)));
-    }
   });
   style_.origin =
       upright_.transpose() * drawing_origin(bounds.center, bounds.radius, upright_ * style_.origin);
@@ -103,15 +102,14 @@ void FrameBuilder::bound(const std::vector<std::vector<Vec3>>& poses, const std:
   if (followed > 0) shown_radius_ = std::min(followed, bounds_.radius);
 }
 
-double FrameBuilder::prepare_camera() {
+double FrameBuilder::prepare_camera(PosedMoments moments) {
   const Structure& s = trajectory_.structure();
   std::vector<std::vector<Vec3>> poses;
-  std::vector<double> times;
-  for (std::size_t i = 0; i < trajectory_.size(); ++i) {
-    const VectorXd whole = placed(trajectory_.positions(i));
+  std::vector<double>& times = moments.times;
+  for (VectorXd& pose : moments.poses) {
+    const VectorXd whole = placed(std::move(pose));
     poses.emplace_back();
     for (Index k = 0; k < whole.size() / 3; ++k) poses.back().push_back(node(whole, static_cast<int>(k)));
-    times.push_back(trajectory_.time(i));
   }
   for (ShownSurface& shown : style_.surfaces)
     shown.plan = plan_of(shown.surface, edge_of(shown, poses.front()), edge_of(shown, poses.back()));
@@ -213,10 +211,10 @@ void FrameBuilder::prepare_still(double thickest) {
       (0.70 * view.direction() - 0.42 * view.right() + 1.15 * Vec3::UnitZ()).cast<float>();
 }
 
-void FrameBuilder::prepare_ghosts() {
+void FrameBuilder::prepare_ghosts(const PosedMoments& moments) {
   if (style_.options.ghosts <= 0) return;
-  for (const std::size_t i : equal_steps(trajectory_, static_cast<std::size_t>(style_.options.ghosts)))
-    ghosts_.push_back({trajectory_.time(i), placed(trajectory_.positions(i))});
+  for (const std::size_t i : equal_steps(moments.poses, static_cast<std::size_t>(style_.options.ghosts)))
+    ghosts_.push_back({moments.times[i], placed(moments.poses[i])});
 }
 
 namespace {
@@ -242,16 +240,19 @@ std::vector<std::size_t> corners_of(const std::vector<Vec3>& way, double off) {
 
 }  // namespace
 
-void FrameBuilder::prepare_trails() {
+void FrameBuilder::prepare_trails(const PosedMoments& moments) {
   if (style_.trails.empty()) return;
   for (const int k : style_.trails) trails_.push_back({k, {}, {}});
-  for (const std::size_t i : equal_steps(trajectory_, trail_points)) {
-    const VectorXd whole = placed(trajectory_.positions(i));
+  for (const std::size_t i : equal_steps(moments.poses, trail_points)) {
+    const VectorXd whole = placed(moments.poses[i]);
     for (Trail& trail : trails_) {
-      trail.t.push_back(trajectory_.time(i));
+      trail.t.push_back(moments.times[i]);
       trail.points.push_back(node(whole, trail.node));
     }
   }
+}
+
+void FrameBuilder::thin_trails() {
   for (Trail& trail : trails_) {
     const std::vector<std::size_t> corners = corners_of(trail.points, trail_error * shown_radius_);
     for (std::size_t k = 0; k < corners.size(); ++k)

@@ -15,6 +15,7 @@
 #include "render/scene/framing.hpp"
 #include "render/scene/hardware.hpp"
 #include "render/scene/look.hpp"
+#include "render/scene/pose_times.hpp"
 #include "render/scene/rod_field.hpp"
 #include "render/scene/skins.hpp"
 
@@ -78,15 +79,16 @@ class FrameBuilder {
   Vec3 node(const VectorXd& whole, int i) const { return upright_ * whole.segment<3>(3 * i); }
   DrawList key_ground(double t) const;  // without bodies; the arrows tell that there are some
   void add_card(DrawList& list) const;
-  void choose_origin();
+  void choose_origin(const std::vector<VectorXd>& poses);
   void bound(const std::vector<std::vector<Vec3>>& poses, const std::vector<double>& times);
-  double prepare_camera();  // returns the radius of the thickest joint [m]
+  double prepare_camera(PosedMoments moments);  // returns the radius of the thickest joint [m]
   // Of a sphere around what is drawn of nodes in one of that radius [m].
   double drawn_radius(double of_nodes, double thickest) const;
   void prepare_still(double thickest);
   void aim(const std::vector<Vec3>& at, DrawList& list) const;
-  void prepare_ghosts();
-  void prepare_trails();
+  void prepare_ghosts(const PosedMoments& moments);
+  void prepare_trails(const PosedMoments& moments);
+  void thin_trails();
   Color rod_color(double t, const RodCopy& rod) const;
   void prepare_hardware(const std::vector<std::vector<Vec3>>& poses, const std::vector<double>& times);
   void add_bodies(double t, const std::vector<Vec3>& at, DrawList& list) const;

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What steps lead past between two states is in the picture, too: a rod that turns once a second keeps its
+// speed, so a step of any length leads to its circle, and pictures of few states must be those of many.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/diagnostics/clearance.hpp"
+#include "render/scene/frame_builder.hpp"
+#include "render/scene/pose_times.hpp"
+#include "render/scene/view.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace coarse_steps_test {
+
+namespace {
+
+const std::string turning = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true},
+         {name = "B", position = [1, 0, 0], mass = 1, velocity = [0, 0, 6.283185307179586]}]
+rods = [{nodes = ["A", "B"], mass = 0.2}]
+[[constraints]]
+kind = "plane"
+nodes = ["B"]
+normal = [0, 1, 0]
+[solver]
+stages = 8
+end_time = 1
+)";
+
+Simulation turned(const std::string& step, const std::string& model = "motion") {
+  std::vector<std::string> changes{"solver.step=" + step};
+  if (model != "motion") changes.push_back("solver.model=\"" + model + "\"");
+  return testing::run_scene(turning, changes);
+}
+
+FrameBuilder pictures(const Simulation& run, bool follow = false) {
+  FrameStyle style;
+  style.width = 640, style.height = 360;
+  style.trails = {1};
+  style.options.camera = "front";
+  style.options.follow = follow;
+  return {run.trajectory, style};
+}
+
+// How far the motion leaves the straight lines from moment to moment, at 50 times within each step [m].
+double left_out(const Trajectory& run, const PosedMoments& moments) {
+  double worst = 0;
+  for (std::size_t i = 0; i + 1 < run.size(); ++i)
+    for (int k = 1; k < 50; ++k) {
+      const double t = run.time(i) + k / 50.0 * (run.time(i + 1) - run.time(i));
+      const auto behind = std::ranges::upper_bound(moments.times, t) - moments.times.begin();
+      const auto m = static_cast<std::size_t>(behind);
+      const VectorXd pose = run.positions_at(t);
+      for (Index n = 0; n < pose.size(); n += 3) {
+        const Vec3 at = pose.segment<3>(n);
+        worst = std::max(worst, segment_distance(at, at, moments.poses[m - 1].segment<3>(n),
+                                                 moments.poses[m].segment<3>(n)));
+      }
+    }
+  return worst;
+}
+
+}  // namespace
+
+// Moments are off by a thousandth of the structure's size, here 1 m, and of them a trail leaves out what is
+// off by a thousandth of the motion's: 2.5 mm with what lies at their ends.
+TEST_CASE("the trail of a circle is a circle at any step") {
+  const auto [step, model] =
+      GENERATE(std::pair<std::string, std::string>{"0.25", "motion"}, std::pair{"0.5", "motion"},
+               std::pair{"1", "motion"}, std::pair{"0.5", "path"}, std::pair{"1", "auto"});
+  CAPTURE(step, model);
+  const Simulation run = turned(step, model);
+  REQUIRE(run.trajectory.size() < 6);
+  const DrawList list = pictures(run).build(1);
+  double way = 0;
+  for (const Tube& line : list.ghosts)
+    for (const float u : {0.0f, 0.5f, 1.0f}) {
+      const Vec3f at = line.a + u * (line.b - line.a);
+      CHECK(std::abs(at.norm() - 1) < 2.5e-3f);
+      if (u == 1) way += static_cast<double>((line.b - line.a).norm());
+    }
+  CHECK(way == Approx(2 * pi).epsilon(2.5e-3));  // it is shorter than the circle by less than that
+}
+
+// A thousandth of the motion's size at either edge moves the camera by few thousandths of its distance. One
+// that follows has room for up to a moment (here 1/64 s) more at both ends of its windows of 12/63 s, which
+// then reach farther by an eighth of that way and less.
+TEST_CASE("coarse steps have the camera and floor of fine ones") {
+  const bool follow = GENERATE(false, true);
+  const Simulation fine = turned("0.002");
+  const FrameBuilder right = pictures(fine, follow);
+  for (const std::string step : {"0.25", "0.5", "1"}) {
+    CAPTURE(step, follow);
+    const Simulation run = turned(step);
+    const FrameBuilder frames = pictures(run, follow);
+    for (const double t : {0.0, 0.17, 0.33, 0.67, 0.9, 1.0}) {
+      const DrawList list = frames.build(t), wanted = right.build(t);
+      CHECK((list.camera.eye - wanted.camera.eye).norm() <
+            (follow ? 0.04f : 0.005f) * wanted.camera.eye.norm());
+      CHECK(list.ground.z == Approx(wanted.ground.z).margin(3e-3));
+      for (const Ball& ball : list.balls) {
+        CHECK(ball.center.z() - ball.radius > list.ground.z);
+        const Vec3f p = project(list.camera, 640, 360, ball.center);
+        CHECK(std::min({p.x(), 640 - p.x(), p.y(), 360 - p.y()}) > 10);
+      }
+    }
+  }
+}
+
+// A thousandth of the 2 m that the legs of a double pendulum span is allowed; 1.6 of it where a step bends
+// both ways and neither of its ends nor its middle tells.
+TEST_CASE("between posed moments the motion is straight") {
+  const std::string pendulum = R"(
+gravity.acceleration = [0, 0, -9.81]
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], mass = 1},
+         {name = "C", position = [2, 0, 0], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 0.2}, {nodes = ["B", "C"], mass = 0.2}]
+[solver]
+stages = 6
+end_time = 3
+)";
+  const std::string step = GENERATE("0.2", "0.1", "0.05", "0.001");
+  const Simulation run = testing::run_scene(pendulum, {"solver.step=" + step});
+  const PosedMoments moments = posed_moments(run.trajectory);
+  CAPTURE(step, moments.times.size());
+  CHECK(std::ranges::is_sorted(moments.times));
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i)
+    CHECK(std::ranges::binary_search(moments.times, run.trajectory.time(i)));
+  CHECK(left_out(run.trajectory, moments) < 1.6e-3 * 2);
+  if (step == "0.001") CHECK(moments.times.size() == run.trajectory.size());
+}
+
+TEST_CASE("moments between states are no more than a picture can wait for and none where all goes straight") {
+  const Simulation spinning = testing::run_scene(turning, {"solver.step=0.25", "solver.end_time=500"});
+  const std::size_t states = spinning.trajectory.size();
+  const std::size_t posed = posed_moments(spinning.trajectory).times.size();
+  CHECK(posed > states + 1000);
+  CHECK(posed <= states + 2000);
+
+  const Simulation falling = testing::run_scene(R"(
+gravity.acceleration = [0, 0, -9.81]
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], mass = 1}, {name = "B", position = [1, 0, 0], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 0.2}]
+[solver]
+step = 0.5
+end_time = 2
+)");
+  CHECK(posed_moments(falling.trajectory).times.size() == falling.trajectory.size());
+}
+
+}  // namespace coarse_steps_test
