@@ -144,9 +144,10 @@ bool Dvm::is_stiff() {
   return forces_are_stiff();
 }
 
+// With constraints at the ends rates that dampers take are never lost, however short steps are.
 double Dvm::longest_step(const State& state, double h, double whole) {
-  if (settling_.over() || system_.constant_forces()) return h;
-  return settling_.longest_step(h, whole, c_.s, !eq_.at_ends, [&] {
+  if (settling_.over() || system_.constant_forces() || eq_.at_ends) return h;
+  return settling_.longest_step(h, whole, c_.s, [&] {
     eq_.start(state.t, state.z, state.w, h);
     return eq_.h_rate();
   });

@@ -19,7 +19,7 @@ class Settling {
   // The step to take in place of h, which may be what is left of a `whole` one; the first of them where h c /
   // m is `z`, which is asked for then only.
   template <class Rate>
-  double longest_step(double h, double whole, int stages, bool may_let_go, const Rate& z_at_start) {
+  double longest_step(double h, double whole, int stages, const Rate& z_at_start) {
     // Of a whole step; shorter ones are little more than noise. Beyond the second, slow rates would notice.
     constexpr double least_share = 2e-7, let_go_share = 1e-3;
     constexpr double gone = 30;  // times m / c
@@ -28,7 +28,7 @@ class Settling {
       const double z = whole / h * z_at_start();
       over_ = !std::isfinite(z) || (z > 1.5 && z * quiet_ > gone * whole);
       if (over_ || !(z > 1.5)) return calm_ = whole, quiet_ += h, h;
-      lets_go_ = may_let_go && 0.2 * stages < least_share * z;
+      lets_go_ = 0.2 * stages < least_share * z;
       step_ = whole * std::max((lets_go_ ? 200 : 0.2 * stages) / z, least_share);
       left_ = lets_go_ ? 25 : 50 / stages;
     } else if (--left_ < 0) {

@@ -360,6 +360,21 @@ TEST_CASE("a pendulum on a stiff spring is a pendulum on a rod") {
     }
 }
 
+// Such steps never lose the rates that a damper takes, which change their sign instead: that is told by the
+// balance, and no short steps are spent on it. Places are those of the creep all the same, m g / c of 1e-5
+// m/s; what rings is h / 2 times a rate of twice that.
+TEST_CASE("constraints at the ends of steps spend no short ones on stiff dampers") {
+  constexpr double c = 1e6, creep = 1.3 * 9.8 / c;
+  const Simulation run = run_scene(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = [0, 0, 0], fixed = true}, {name = 'A', "
+      "position = [0.9, 0, 0], mass = 1.3}]\nrods = [{nodes = ['O', 'A'], mass = 0}]\n"
+      "[gravity]\nacceleration = [0, 0, -9.8]\n[[forces]]\nkind = 'drag'\nnodes = ['A']\ndamping = " +
+      number(c) + "\n[solver]\nconstraints_at = 'ends'\nstep = 0.01\nend_time = 0.3\n");
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(run.steps <= 31);
+  CHECK(end_of(run)[5] == Approx(-creep * 0.3).margin(0.01 * creep));
+}
+
 TEST_CASE("constraints at the ends of steps take stiff springs too") {
   // A rod and a second one behind it, or a spring of its length.
   const std::string arms = R"([structure]
