@@ -251,8 +251,14 @@ class DipSearch {
       return (trajectory_.time(i + 1) - trajectory_.time(i)) *
              std::max(spins[i - first_], spins[i + 1 - first_]);
     };
+    // What turns a rod ten times round in a step has not been solved: nothing lies between the step's ends,
+    // nor behind it.
     double turned = 0;
-    for (std::size_t i = first_; i < last_; ++i) turned += turn(i);
+    for (std::size_t i = first_; i < last_; ++i)
+      if (turn(i) <= 20 * pi)
+        turned += turn(i);
+      else
+        last_ = i;
     const double states = static_cast<double>(last_ - first_ + 1);
     const auto stride = static_cast<std::size_t>(std::ceil(std::max(1.0, states / most)));
     const double each = std::max(most_turn, turned / std::max(1.0, most - states));
