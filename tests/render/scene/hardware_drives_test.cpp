@@ -129,7 +129,7 @@ std::vector<Sleeve> housings(const DrawList& list) {
   return found;
 }
 
-// Where joints are balls, drives are plain: without wheels, collars and housings, and each between its nodes.
+// Where joints are balls, drives are plain: without wheels and housings, and each between its nodes.
 TEST_CASE("line drawings and exports have telescopes and actuators too") {
   const Scene scene = read_scene_text(machine, "machine.toml");
   const Simulation run = simulate(build_model(scene), scene.solver);
@@ -144,7 +144,9 @@ TEST_CASE("line drawings and exports have telescopes and actuators too") {
           }) == 1);
   CHECK(std::ranges::count_if(list.tubes, [&](const Tube& u) { return same(u.a, node(10)); }) == 1);
   CHECK(std::ranges::count_if(list.tubes, [&](const Tube& u) { return same(u.b, node(9)); }) >= 2);
-  CHECK(list.sleeves.empty());
+  CHECK(std::ranges::none_of(list.sleeves, [&](const Sleeve& s) {
+    return s.finish == Finish::anodised || (0.5f * (s.a + s.b) - node(8)).norm() < 0.2f;
+  }));
 }
 
 TEST_CASE("a telescope of one stage is an actuator, however it is written") {
