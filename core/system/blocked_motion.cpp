@@ -35,8 +35,8 @@ double size_of(const System& system) {
 }
 
 // Node coordinates with the least |Phi| near q, by Levenberg's and Marquardt's method, without row `left_out`
-// (-1: with all), or with that row moved by `by`: whether there is a pose.
-bool has_pose(const System& system, double t, VectorXd q, Index left_out, double by = 0) {
+// (-1: with all), or with that row moved by `by`: whether that is a pose.
+bool leads_to_pose(const System& system, double t, VectorXd q, Index left_out, double by) {
   const double size = size_of(system);
   const Index n = q.size(), m = system.all_constraints();
   const auto residual = [&](const VectorXd& x) {
@@ -61,6 +61,16 @@ bool has_pose(const System& system, double t, VectorXd q, Index left_out, double
   }
   // At a limit of the reach Newton's method is slow, and a millionth of the structure is there.
   return phi.norm() <= 1e-6 * size;
+}
+
+// From rods in line the method may find no way out of the line: asked again a thousandth beside it.
+bool has_pose(const System& system, double t, const VectorXd& q, Index left_out, double by = 0) {
+  if (leads_to_pose(system, t, q, left_out, by)) return true;
+  VectorXd beside(q.size());
+  for (Index i = 0; i < q.size(); ++i)
+    beside[i] = 1e-3 * size_of(system) * std::cos(1.0 + static_cast<double>(i));
+  return leads_to_pose(system, t, q + beside, left_out, by) ||
+         leads_to_pose(system, t, q - beside, left_out, by);
 }
 
 }  // namespace
@@ -115,11 +125,17 @@ std::string beyond_reach(const System& system, double t, double h, const ConstVe
     constexpr double next = 1e-4;  // far more than what counts as a pose, and nothing to what is driven
     const Index row = row_of(drive);
     if (row == std::ssize(sources) || !drive.target.moves()) continue;
-    for (const double by : {-next, next})
-      if (!has_pose(system, t + h, q, row, by * size_of(system)))
-        return "the drive " + drive.name + " leads to " + value(drive, t + h) +
-               ", the utmost that the other constraints reach (a dead centre), where no step goes on: let it "
-               "end a ten-thousandth of its way before";
+    for (const double by : {-next, next}) {
+      if (has_pose(system, t + h, q, row, by * size_of(system))) continue;
+      // Rows are value - target: with `by` more of it the value would be by less than the target.
+      const bool leaves = by * (drive.target(t + h) - drive.target(t - h)) > 0;
+      const std::string utmost = ", the utmost that the other constraints reach (a dead centre), ";
+      if (leaves)
+        return "the drive " + drive.name + " sets out from " + value(drive, t) + utmost +
+               "where it turns the rods without a bound: make solver.step smaller";
+      return "the drive " + drive.name + " leads to " + value(drive, t + h) + utmost +
+             "where no step goes on: let it end a ten-thousandth of its way before";
+    }
   }
   return "";
 }
