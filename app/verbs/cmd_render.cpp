@@ -103,6 +103,7 @@ int cmd_render(const Arguments& arguments) {
   if (arguments.encode_only) {
     require_all_frames(folder, shown, run, arguments);
     if (!encode_films(directory, folder, shown, run, arguments)) return exit_interrupted;
+    write_run_report(directory, scene, run, diagnostics, arguments);
     results_written(team.get());
     return exit_code_of(run, diagnostics);
   }

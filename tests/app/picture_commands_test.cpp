@@ -97,6 +97,7 @@ TEST_CASE(
   REQUIRE(run_program(with(film, {"--frames", "1:3"})).code == 0);
   CHECK(run_program({"reproduce", dir / "out/report.html"}).code == 0);
   fs::remove(dir / "out/animation.webp");
+  fs::remove(dir / "out/report.html");
   // Another film's frames do not go for one of which nothing is drawn.
   const ProgramResult other =
       run_program(with(film, {"--encode-only", "--force", "--set", "solver.end_time=0.05"}));
@@ -105,6 +106,7 @@ TEST_CASE(
   const ProgramResult joined = run_program(with(film, {"--encode-only"}));
   CHECK(joined.code == 0);
   CHECK(fs::exists(dir / "out/animation.webp"));
+  CHECK(fs::exists(dir / "out/report.html"));
 }
 
 TEST_CASE("frames of an earlier, longer film do not survive") {
