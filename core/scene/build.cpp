@@ -96,7 +96,7 @@ std::vector<SceneElement> placing(const std::vector<SceneElement>& elements,
 }
 
 bool ends_deployed(const Scene& scene) {
-  return !scene.deployment.terms.empty() && scene.solver.at_deployed != "pass";
+  return !scene.deployment.terms.empty() && scene.solver.at_deployed == "stop";
 }
 
 // Moves the nodes to where they are at t = 0, which given lengths of rods say; what follows that is "as at

@@ -94,7 +94,7 @@ std::shared_ptr<const Model> latched_model(const Model& model, bool eliminate_li
     held.offset = deployment.deployed;
     if (!gives)
       structure.constraints.push_back(
-          {"measure", "latch of the deployment", {}, {}, 0.0, deployment.measure, held});
+          {"measure", "latch of the deployment", {}, {}, 0.0, deployment.measure, held, false, true});
     System locked(structure, eliminate_linear);
     return std::make_shared<const Model>(Model{std::move(structure), std::move(locked)});
   }

@@ -470,7 +470,7 @@ std::shared_ptr<const Model> OneSided::model(const Model& base) const {
     TimeFunction held_at;
     held_at.offset = f.held_at;
     structure.constraints.push_back(
-        {"measure", f.pads.front().name + " (sticks)", {}, {}, 0.0, f.measure, held_at});
+        {"measure", f.pads.front().name + " (sticks)", {}, {}, 0.0, f.measure, held_at, false, true});
   }
   stops_.hold(held(), structure);
   System system(structure, eliminate_linear_);

@@ -39,7 +39,7 @@ std::vector<std::vector<int>> telescopes(const Structure& structure) {
     if (!rod) found.push_back({n[0], n[1]});
   };
   for (const Constraint& c : structure.constraints) {
-    if (c.kind != "measure") continue;
+    if (c.kind != "measure" || c.of_stop) continue;
     if (!are_stages(c)) {
       add_length(c.measure);
       continue;

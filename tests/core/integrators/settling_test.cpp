@@ -105,7 +105,7 @@ TEST_CASE("layers of dampers go on over the ends of steps, and nothing that is c
   Settling settling;
   int asked = 0;
   const auto step = [&](double h, double rate) {
-    return settling.longest_step(h, 1.0, 3, false, [&] { return ++asked, rate * h; });
+    return settling.longest_step(h, 1.0, 3, [&] { return ++asked, rate * h; });
   };
   CHECK(step(1e-3, 1e3) == 0.5e-3);  // h c / m = 1 of what is left of a step, 1000 of a whole one
   double t = 0.5e-3, longest = 0.6e-3;

@@ -37,6 +37,14 @@ stiffness = 10
 )");
   // Not where a rod is: C-F has one.
   CHECK(telescopes(model->structure) == std::vector<std::vector<int>>{{0, 1, 2, 3}, {4, 1}});
+  // What a stop holds is none of it.
+  Structure met = model->structure;
+  met.constraints.push_back(met.constraints.back());
+  met.constraints.back().kind = "measure";
+  met.constraints.back().measure = {MeasureKind::length, {4, 3}, Vec3::Zero(), 0.0, {}};
+  CHECK(telescopes(met).size() == 3);
+  met.constraints.back().of_stop = true;
+  CHECK(telescopes(met) == telescopes(model->structure));
   std::string lines;
   for (const ShownLine& line : lines_between_nodes(model->structure))
     lines += line.group + " " + std::to_string(line.a) + std::to_string(line.b) + " ";
