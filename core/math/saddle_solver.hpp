@@ -47,6 +47,9 @@ class SaddleSolver {
   // How many rows have a smaller pivot, as far as the factors in use tell: all that have, and redundant ones
   // that depend on few others. And by factors in twice the digits, which are in use then where a row is weak.
   Index rows_below(double bound) const;
+  // No row depends on others, and no pivot is below `least`, by factors in twice the digits, which are in use
+  // then. Where doubles show a row that does, it is not looked any closer.
+  bool all_independent(double least);
   Index rows_below_finely(double bound);
   // False where a row that is not known to be redundant may have a smaller one, by the factors in use. Of a
   // row that depends on others, c of each, they have e (1 + |c|^2): in doubt, ask for many e.

@@ -101,6 +101,12 @@ Index SaddleSolver::rows_below(double bound) const {
   return below;
 }
 
+bool SaddleSolver::all_independent(double least) {
+  constexpr double of_few_others = 10;  // times e
+  return rows_below(of_few_others * regularisation_) == 0 && factorise_finely() && redundant_ == 0 &&
+         weakest_ >= least;
+}
+
 Index SaddleSolver::rows_below_finely(double bound) {
   Index below = 0;
   if (!factorise_finely()) return below;

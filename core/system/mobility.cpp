@@ -138,19 +138,17 @@ bool depends(const SparseRows& G, int row, const std::vector<int>& others) {
   return x.norm() <= left * std::max(1.0, y.norm());
 }
 
-// Among the rows of null vectors of G^T, which others have no part in: elimination in order fills a chain's.
+// Elimination in order fills the rows of a chain, of which none depends.
 std::vector<int> dependent_rows(const SparseRows& G) {
-  const std::vector<char> by_itself = determined_rows(G);
-  std::vector<int> rows, dependent;
-  for (std::size_t r = 0; r < by_itself.size(); ++r)
-    if (!by_itself[r]) rows.push_back(static_cast<int>(r));
-  const SparseRows some = picked_rows(G, rows);
-  const auto follows = [&some](int row, const std::vector<int>& others) {
-    return depends(some, row, others);
-  };
-  for (const int row : eliminate(some, VectorXd::Zero(some.rows()), dependent_row, follows).redundant)
-    dependent.push_back(rows[static_cast<std::size_t>(row)]);
-  return dependent;
+  constexpr double weak = 1e-12;  // the square of a singular value of unit rows that elimination may doubt
+  SparseRows identity(G.cols(), G.cols());
+  identity.setIdentity();
+  const SparseRows clean = without_round_off_transposed(G).transpose();
+  SaddleSolver solver(identity, clean);
+  if (solver.factorise(clean) && solver.all_independent(weak)) return {};
+  return eliminate(G, VectorXd::Zero(G.rows()), dependent_row,
+                   [&](int row, const std::vector<int>& others) { return depends(G, row, others); })
+      .redundant;
 }
 
 }  // namespace

@@ -75,6 +75,17 @@ TEST_CASE("the sparse analysis of large rings agrees with the count") {
   CHECK(m.degrees_of_freedom == 1);
 }
 
+// A millionth of a degree before its deployed pose a large ring counts as anywhere; of chains that hang no
+// row depends on others, however long they are.
+TEST_CASE("the sparse analysis counts next to the flat pose, and chains of thousands of links") {
+  const Mobility ring = mobility_of("hoop6", {"structure.units=80", "structure.fold_angle=1e-6"});
+  CHECK(ring.rank == 12 * 80 - 1);
+  CHECK(ring.redundant.size() == 81);
+  const Mobility chain = mobility_of("chain", {"structure.links=3000", "structure.span=15"});
+  CHECK(chain.redundant.empty());
+  CHECK(chain.degrees_of_freedom == chain.coordinates - chain.constraints);
+}
+
 TEST_CASE("the rank falls to 10 n where the ring is fully deployed") {
   // A scene starts folded; the deployed pose is the one at 45 degrees with its radii stretched and its hinges
   // level with the posts' ends, 0.6 m above and below the middle.
