@@ -127,11 +127,11 @@ class Change {
     struck_ = passes_ = std::vector<bool>(rows_.size(), false);
   }
 
-  // A state may miss the constraints by what the method drifts from them: what holds has no rate all the
-  // same, and friction turns round where its rate u is zero. Once they are met that is zero still, and what
-  // rested does, else friction would turn back there and stops be left.
+  // A state may miss the constraints by what the method drifts from them, `met` does not: what holds has no
+  // rate all the same, and friction turns round where u is zero. It stays so, and what rested does.
   void settle(const PushResponses& responses) {
-    const VectorXd u = responses.rates(out_.state.w);
+    const State met = which_.empty() ? out_.state : hand_over(base_, out_.state, base_).state;
+    const VectorXd u = responses.rates(out_.state.w), u_met = responses.rates(met.w);
     std::vector<bool> still(rows_.size(), false);
     std::vector<Index> rows;
     const auto held = [&](Index r) { return !which_.empty() && sides_.active(side(r)); };
@@ -142,18 +142,17 @@ class Change {
     };
     bool drifts = false, turns = false;
     for (Index r = 0; r < count(); ++r) {
-      drifts = drifts || (held(r) && std::abs(u[r]) > sides_.zero_rate(side(r)));
+      drifts = drifts || (held(r) && std::abs(u_met[r]) > sides_.zero_rate(side(r)));
       if (sides_.is_friction(side(r)) && crossed(r)) keep(r), turns = !rows.empty();
     }
     if (!drifts && !turns) return;
     for (Index r = 0; r < count(); ++r)
       if (held(r) || (turns && sides_.is_friction(side(r)))) keep(r);
-    out_.state = hand_over(base_, out_.state, base_).state;
-    const VectorXd left = responses.rates(out_.state.w);
-    std::erase_if(rows, [&](Index r) { return passes(r, left[r]); });
+    out_.state = met;
+    std::erase_if(rows, [&](Index r) { return passes(r, u_met[r]); });
     if (rows.empty()) return;
     VectorXd impulses = VectorXd::Zero(count());
-    impulses(rows) = -Cholesky(D_(rows, rows)).solve(VectorXd(left(rows)));
+    impulses(rows) = -Cholesky(D_(rows, rows)).solve(VectorXd(u_met(rows)));
     responses.give(impulses, out_.state.w);
   }
 
