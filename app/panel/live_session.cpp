@@ -293,28 +293,38 @@ void LiveSession::start_study() {
   if (!study_.busy()) study_.submit({state_.study, simulated_part(state_.history.now())});
 }
 
-void LiveSession::start_export(bool replace, bool as_shown) {
+void LiveSession::start_export(FilesThere there, bool as_shown) {
   const std::string output = state_.export_output = at_home(state_.export_output);
   const SceneDocument& now = state_.history.now();
-  if (!as_shown && own_file_now() == OwnFile::changed) {
-    state_.question = {
-        absolute(now.path) + " was changed by another program since it was opened.",
-        {{"Export what is shown", [replace](LiveSession& s) { s.start_export(replace, true); }},
-         {"Open it again", [path = now.path](LiveSession& s) { s.open_file(path); }},
-         {"Cancel", {}}}};
-    return;
-  }
-  if (!replace && holds_files(output)) {
-    state_.question = {
-        absolute(output) + " holds files. Replace those of the same names?",
-        {{"Replace", [as_shown](LiveSession& s) { s.start_export(true, as_shown); }}, {"Cancel", {}}}};
-    return;
-  }
   const ExportKind& kind = export_kinds()[state_.export_kind];
+  const auto again = [as_shown](FilesThere files) -> Intent {
+    return [files, as_shown](LiveSession& s) { s.start_export(files, as_shown); };
+  };
+  if (!as_shown && own_file_now() == OwnFile::changed) {
+    state_.question = {absolute(now.path) + " was changed by another program since it was opened.",
+                       {{"Export what is shown", [there](LiveSession& s) { s.start_export(there, true); }},
+                        {"Open it again", [path = now.path](LiveSession& s) { s.open_file(path); }},
+                        {"Cancel", {}}}};
+    return;
+  }
+  if (there == FilesThere::asked && holds_files(output)) {
+    const std::string begun = export_goes_on_with(now, kind, output);
+    const bool loses = export_loses_run(kind, output);
+    state_.question = {absolute(output) + (begun.empty() ? " holds files. Replace those of the same names?"
+                                                         : " holds " + begun + " of this very scene."),
+                       {}};
+    auto& [text, answers] = state_.question;
+    if (begun.empty() && loses) text += " The unfinished run there would be lost.";
+    if (!begun.empty()) answers.emplace_back("Go on", again(FilesThere::go_on));
+    if (begun.empty() || loses)  // frames of the same film stay in any case
+      answers.emplace_back(begun.empty() ? "Replace" : "Begin anew", again(FilesThere::replaced));
+    answers.emplace_back("Cancel", Intent());
+    return;
+  }
   exporting_to_ = absolute(output);
   state_.message = "exporting to " + exporting_to_ + " \u2026";
   if (options_.replayed) return;
-  export_.submit({own_program(), export_words(now, kind, output, replace)});
+  export_.submit({own_program(), export_words(now, kind, output, there == FilesThere::replaced)});
 }
 
 void LiveSession::open_folder() {

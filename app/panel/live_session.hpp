@@ -33,6 +33,9 @@ struct Arrivals {
   JobState simulation, studying, exporting;
 };
 
+// What is done with files in the folder of an export.
+enum class FilesThere { asked, go_on, replaced };
+
 class LiveSession {
  public:
   // Asks for the first run. Throws SceneError where the scene is not sound.
@@ -61,8 +64,9 @@ class LiveSession {
   void stop_simulation() { simulator_.cancel(); }
   void start_study();
   void stop_study() { study_.stop(); }
-  // Asks where something would be replaced, and where the scene's file is no longer what is shown.
-  void start_export(bool replace = false, bool as_shown = false);
+  // Asks where something would be replaced, or can be gone on with, and where the scene's file is no longer
+  // what is shown.
+  void start_export(FilesThere there = FilesThere::asked, bool as_shown = false);
   void stop_export() { export_.stop(); }
   void open_folder();                  // of the last export, in the desktop's own way
   void save(const std::string& path);  // asks likewise, and where others changed the scene's own file

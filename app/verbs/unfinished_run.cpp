@@ -51,12 +51,18 @@ void UnfinishedRun::refuse_in(const fs::path& directory, const std::string& who)
 }
 
 // Another build may step otherwise.
-std::string UnfinishedRun::fingerprint() const {
+std::string UnfinishedRun::head(const Scene& scene) {
   Checksum sum;
-  sum.add(scene_text(scene_));
+  sum.add(scene_text(scene));
   sum.add(version());
   sum.add(read_text_file("/proc/self/exe").text);
-  return sum.text();
+  return magic + sum.text() + "\n";
+}
+
+bool UnfinishedRun::of_scene(const fs::path& directory, const Scene& scene) {
+  std::ifstream in(directory / "unfinished" / "checkpoint", std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  return text.starts_with(magic) && text.starts_with(head(scene));
 }
 
 bool UnfinishedRun::find() {
@@ -66,14 +72,14 @@ bool UnfinishedRun::find() {
   std::ifstream in(path, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   if (!in) throw FileError(path, "cannot be read");
-  const std::string head = magic + fingerprint() + "\n";
-  if (!text.starts_with(magic) || text.size() < head.size() + 17)
+  const std::string first = head(scene_);
+  if (!text.starts_with(magic) || text.size() < first.size() + 17)
     throw FileError(path, "is no checkpoint of a run; --force begins anew");
-  if (!text.starts_with(head))
+  if (!text.starts_with(first))
     throw FileError(folder(),
                     "holds an unfinished run of another scene, of other settings or by another version of "
                     "unfurl; use --force to begin anew, or another -o");
-  const std::string sum = text.substr(head.size(), 16), bytes = text.substr(head.size() + 17);
+  const std::string sum = text.substr(first.size(), 16), bytes = text.substr(first.size() + 17);
   if (sum_of(bytes) != sum) throw FileError(path, "is damaged; --force begins anew");
   Archive archive(bytes);
   RunTables::Sizes sizes;
@@ -182,9 +188,9 @@ void UnfinishedRun::take(Part& part) {
 void UnfinishedRun::keep() {
   if (last_.empty()) return;
   tables_->flush_to_disk();
-  if (fingerprint_.empty()) fingerprint_ = fingerprint();
+  if (head_.empty()) head_ = head(scene_);
   FileWatcher* const watcher = watch_files(nullptr);  // listed by its name, not by its bytes
-  write_file_atomically(folder() / "checkpoint", magic + fingerprint_ + "\n" + sum_of(last_) + "\n" + last_);
+  write_file_atomically(folder() / "checkpoint", head_ + sum_of(last_) + "\n" + last_);
   watch_files(watcher);
 }
 

@@ -29,6 +29,9 @@ class UnfinishedRun {
                 Beside beside);
 
   static bool lies_in(const std::filesystem::path& directory);
+  // One lies there that a run of this scene by this very program goes on with.
+  static bool of_scene(const std::filesystem::path& directory, const Scene& scene);
+  static std::string head(const Scene& scene);  // with which its checkpoint begins
   // Throws FileError where one does that `who` ("a film") cannot go on with.
   static void refuse_in(const std::filesystem::path& directory, const std::string& who);
   // Reads the checkpoint, if there is one. Throws FileError where it is of another run or damaged.
@@ -62,7 +65,6 @@ class UnfinishedRun {
   void take(Part& part);
   void keep();  // as the last part left it
   Digest whole(Simulation& rest) const;
-  std::string fingerprint() const;
 
   WrittenFiles& written_;
   const Scene& scene_;
@@ -73,7 +75,7 @@ class UnfinishedRun {
   std::unique_ptr<RunTables> tables_;
   RunTables::Sizes good_;  // of what can be trusted
   std::optional<Archive> archived_;
-  std::string fingerprint_;
+  std::string head_;
   std::string last_;                                  // checkpoint behind the last part
   std::vector<std::unique_ptr<PendingFile>> copies_;  // of the tables of a run that was interrupted
   std::chrono::steady_clock::time_point written_at_ = std::chrono::steady_clock::now();

@@ -76,7 +76,8 @@ void draw_export(Ui& ui, PanelState& state) {
   if (button(ui, "close export", "Close", "Esc")) state.export_open = false;
   if (state.exporting.running) {
     ImGui::SameLine();
-    if (button(ui, "stop export", "Stop the export", "what is simulated is kept"))
+    if (button(ui, "stop export", "Stop the export",
+               "what is simulated is kept; of figures alone those that are written"))
       state.intents.emplace_back(&LiveSession::stop_export);
   }
   if (state.message.empty()) return;

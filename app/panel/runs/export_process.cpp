@@ -11,7 +11,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/output/film_folder.hpp"
 #include "app/panel/document/own_file.hpp"
+#include "app/verbs/unfinished_run.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/text_file.hpp"
 #include "render/image/child_process.hpp"
@@ -83,6 +85,10 @@ std::vector<std::string> words_behind(const ExportKind& kind, const std::string&
   return words;
 }
 
+bool file_holds(const SceneDocument& document) {
+  return !document.path.empty() && own_file(document, nullptr) == OwnFile::same;
+}
+
 }  // namespace
 
 std::string exported_scene(const SceneDocument& document, const std::string& output, bool in_file) {
@@ -94,7 +100,7 @@ std::string exported_scene(const SceneDocument& document, const std::string& out
 
 std::vector<std::string> export_words(const SceneDocument& document, const ExportKind& kind,
                                       const std::string& output, bool replace) {
-  const bool in_file = !document.path.empty() && own_file(document, nullptr) == OwnFile::same;
+  const bool in_file = file_holds(document);
   const std::string scene = exported_scene(document, output, in_file);
   if (!in_file) {
     if (const fs::path folder = fs::path(scene).parent_path(); !folder.empty())
@@ -119,6 +125,21 @@ std::string export_command(const SceneDocument& document, const ExportKind& kind
   std::string behind;
   for (const std::string& word : words_behind(kind, output, false)) behind += " " + shell_word(word);
   return line.replace(line.find(plain), plain.size(), behind);
+}
+
+std::string export_goes_on_with(const SceneDocument& document, const ExportKind& kind,
+                                const std::string& output) {
+  const bool run = UnfinishedRun::lies_in(output);
+  if (kind.verb == "figure" || (kind.verb == "run" ? !run || !kind.formats.empty() : run)) return "";
+  SceneDocument exported = document;
+  exported.name = exported_scene(document, output, file_holds(document));  // may be its title
+  const Scene scene = read_document(exported);
+  if (run) return UnfinishedRun::of_scene(output, scene) ? "an unfinished run" : "";
+  return FilmFolder(output, scene).holds_this() ? "a film" : "";
+}
+
+bool export_loses_run(const ExportKind& kind, const std::string& output) {
+  return kind.verb != "figure" && UnfinishedRun::lies_in(output);
 }
 
 SceneDocument saved_document(const SceneDocument& document, const std::string& path, WrittenBack& written) {

@@ -30,6 +30,12 @@ std::vector<std::string> export_words(const SceneDocument& document, const Expor
 // The same as a person would type it; writes nothing.
 std::string export_command(const SceneDocument& document, const ExportKind& kind, const std::string& output,
                            bool in_file);
+// What lies in `output` that this export goes on with where nothing is replaced: "an unfinished run", "a
+// film"; empty: nothing. Throws SceneError.
+std::string export_goes_on_with(const SceneDocument& document, const ExportKind& kind,
+                                const std::string& output);
+// Whether replacing what is there loses an unfinished run.
+bool export_loses_run(const ExportKind& kind, const std::string& output);
 
 // The document with its changes in the text, comments kept, as a file of that path would hold it. Throws
 // SceneError. `written`: that text, and what it has lost.

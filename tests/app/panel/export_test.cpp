@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <filesystem>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
+#include "app/output/film_folder.hpp"
 #include "app/panel/document/own_file.hpp"
 #include "app/panel/runs/export_process.hpp"
 #include "app/panel/runs/study_job.hpp"
+#include "app/verbs/unfinished_run.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/write.hpp"
 #include "core/scene/write_back.hpp"
@@ -175,6 +180,56 @@ TEST_CASE("an export that is stopped keeps what it has simulated") {
     CHECK(std::filesystem::exists(out + "/summary.json"));
     CHECK(std::filesystem::exists(out + "/unfinished/checkpoint"));
   }
+}
+
+TEST_CASE("an export into the folder of an unfinished run or film of its scene offers to go on") {
+  const ScratchDirectory scratch;
+  const std::string scene =
+      scratch.write("own.toml", "[structure]\nkind = 'pendulum'\n[solver]\nend_time = 0.5\n");
+  scratch.write("other.toml", "[structure]\nkind = 'pendulum'\n[solver]\nend_time = 0.25\n");
+  PanelDriver driver(PanelDriver::small(), open_document(scene, {"solver.step=0.01"}));
+  using Answers = std::vector<std::string>;
+  const auto asked = [&](std::size_t kind, const std::string& output) {
+    driver.state().export_kind = kind;
+    driver.state().export_output = scratch / output;
+    driver.state().intents.emplace_back([](LiveSession& s) { s.start_export(); });
+    driver.frame();
+    CHECK_FALSE(driver.state().exporting.running);
+    const Question question = std::exchange(driver.state().question, {});
+    Answers answers;
+    for (const auto& answer : question.answers) answers.push_back(answer.first);
+    return std::pair(question.text, answers);
+  };
+  const auto run_of = [&](const std::string& file) {
+    scratch.write("run/unfinished/checkpoint",
+                  UnfinishedRun::head(read_scene_file(scratch / file, {"solver.step=0.01"})));
+  };
+  const Answers go_on{"Go on", "Begin anew", "Cancel"}, replace{"Replace", "Cancel"};
+  const std::size_t film = 0, figures = 1, data = 2, gltf = 3;
+  std::filesystem::create_directories(scratch / "run/unfinished");
+  run_of("own.toml");
+  CHECK(asked(data, "run").second == go_on);
+  for (const std::size_t kind : {film, gltf}) {  // which simulate anew
+    const auto [text, answers] = asked(kind, "run");
+    CHECK(answers == replace);
+    CHECK(text.ends_with("The unfinished run there would be lost."));
+  }
+  CHECK(asked(figures, "run").first.ends_with("Replace those of the same names?"));  // it stays
+  run_of("other.toml");
+  const auto [text, answers] = asked(data, "run");
+  CHECK(answers == replace);
+  CHECK(text.ends_with("The unfinished run there would be lost."));
+
+  const Scene shown = read_scene_file(scene, {"solver.step=0.01"});
+  FilmFolder(scratch / "film", shown).claim();
+  CHECK(asked(film, "film").second == Answers{"Go on", "Cancel"});  // drawn frames stay in any case
+  CHECK(asked(data, "film").second == replace);
+  driver.state().history.replace([&] {
+    SceneDocument changed = driver.state().history.now();
+    changed.edits["solver.end_time"] = 0.25;
+    return changed;
+  }());
+  CHECK(asked(film, "film").second == replace);
 }
 
 TEST_CASE("what an export says is in its box when the window comes to rest") {
