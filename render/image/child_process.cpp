@@ -10,6 +10,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <thread>
 
 extern char** environ;
@@ -17,7 +18,7 @@ extern char** environ;
 namespace unfurl {
 namespace {
 
-std::array<std::atomic<pid_t>, 16> children{};  // 0: free
+std::array<std::atomic<pid_t>, 16> children{};  // 0: free; below: to be asked, not killed
 
 void enter_child(pid_t pid) {
   for (auto& child : children)
@@ -26,7 +27,8 @@ void enter_child(pid_t pid) {
 
 void forget_child(pid_t pid) {
   for (auto& child : children)
-    if (pid_t it = pid; child.compare_exchange_strong(it, 0)) return;
+    for (pid_t it : {pid, -pid})
+      if (child.compare_exchange_strong(it, 0)) return;
 }
 
 }  // namespace
@@ -36,7 +38,7 @@ ChildProcess::~ChildProcess() {
   wait();
 }
 
-int ChildProcess::start(const std::vector<std::string>& words, const Streams& streams) {
+int ChildProcess::start(const std::vector<std::string>& words, const Streams& streams, Ending ending) {
   std::vector<char*> argv;
   for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
@@ -61,7 +63,7 @@ int ChildProcess::start(const std::vector<std::string>& words, const Streams& st
   if (error != 0) return error;
   const std::lock_guard lock(mutex_);
   pid_ = pid;
-  enter_child(pid);
+  enter_child(ending == Ending::asked ? -pid : pid);
   return 0;
 }
 
@@ -91,12 +93,16 @@ std::optional<int> ChildProcess::wait(double seconds) {
 
 void ChildProcess::send(int signal) {
   const std::lock_guard lock(mutex_);
-  if (pid_ > 0) ::kill(pid_, signal);
+  if (pid_ <= 0) return;
+  ::kill(pid_, signal);
+  if (signal == SIGTERM)  // a second one would end it at once
+    for (auto& child : children)
+      if (pid_t it = -pid_; child.compare_exchange_strong(it, 0)) return;
 }
 
 void end_children() {
   for (auto& child : children)
-    if (const pid_t pid = child; pid > 0) ::kill(pid, SIGKILL);
+    if (const pid_t pid = child; pid != 0) ::kill(std::abs(pid), pid > 0 ? SIGKILL : SIGTERM);
 }
 
 }  // namespace unfurl

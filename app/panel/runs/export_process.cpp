@@ -185,11 +185,11 @@ std::string exported(const ExportRequest& request, const ExportProcess::Task& ta
   words.insert(words.end(), request.words.begin(), request.words.end());
   words.emplace_back("--quiet");  // what is left is what failed
   ChildProcess child;
-  if (const int error = child.start(words, {.error = log.file}); error != 0)
+  if (const int error = child.start(words, {.error = log.file}, ChildProcess::Ending::asked); error != 0)
     throw FileError(request.program, error);
   std::optional<int> code;
   // A second signal ends it at once, and what it has simulated is lost: only where nothing came of the first.
-  constexpr int patience = 600;  // of so many waits
+  constexpr int patience = 6000;  // of so many waits: a part of a large run takes minutes to be judged
   for (int asked = 0; !(code = child.wait(0.1));)
     if (task.stopped() && asked++ % patience == 0) child.send(SIGTERM);
   std::string text = read_text_file(log.name).text;
