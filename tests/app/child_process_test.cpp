@@ -7,11 +7,14 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <filesystem>
+#include <string>
 #include <thread>
 
 #include "tests/app/run_program.hpp"
 
 using namespace unfurl;
+
+namespace child_process_test {
 
 TEST_CASE("children that keep their work are asked to end once and the others are killed") {
   const ScratchDirectory scratch;
@@ -39,3 +42,5 @@ TEST_CASE("children that keep their work are asked to end once and the others ar
   CHECK(code(ChildProcess::Ending::asked, false) == 1);
   CHECK(code(ChildProcess::Ending::asked, true) == 1);
 }
+
+}  // namespace child_process_test
