@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "app/command.hpp"
+#include "app/output/checkpoint_head.hpp"
 #include "app/output/command_line.hpp"
 #include "app/output/film_folder.hpp"
 #include "app/output/interrupt.hpp"
@@ -132,7 +133,7 @@ int cmd_run(const Arguments& arguments) {
   export_formats_of(arguments);  // refuses unknown ones before any work
   const Scene scene = scene_of(arguments);
   if (arguments.plan && arguments.resume &&
-      !(in_parts(scene, arguments) && UnfinishedRun::lies_in(arguments.output)))
+      !(in_parts(scene, arguments) && holds_checkpoint(arguments.output)))
     refuse_to_resume(arguments.output);
   if (arguments.plan) return show_plan(scene, arguments, false);
   Scene built = scene;

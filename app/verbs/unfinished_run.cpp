@@ -7,11 +7,9 @@
 #include <system_error>
 #include <utility>
 
+#include "app/output/checkpoint_head.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/checksum.hpp"
-#include "core/scene/text_file.hpp"
-#include "core/scene/write.hpp"
-#include "core/text/version.hpp"
 
 namespace unfurl {
 
@@ -19,7 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* magic = "unfurl checkpoint 1\n";
 const std::string tables[] = {"series.csv", "trajectory.csv", "rod_forces.csv"};
 
 std::string sum_of(const std::string& bytes) {
@@ -38,42 +35,22 @@ UnfinishedRun::UnfinishedRun(WrittenFiles& written, const Scene& scene, std::sha
       seconds_(seconds),
       beside_(beside) {}
 
-bool UnfinishedRun::lies_in(const fs::path& directory) {
-  std::error_code error;
-  return fs::exists(directory / "unfinished" / "checkpoint", error);
-}
-
 void UnfinishedRun::refuse_in(const fs::path& directory, const std::string& who) {
-  if (lies_in(directory))
+  if (holds_checkpoint(directory))
     throw FileError(directory / "unfinished", "holds an unfinished run, which " + who +
                                                   " cannot go on with; use --force to begin anew, or "
                                                   "another -o");
 }
 
-// Another build may step otherwise.
-std::string UnfinishedRun::head(const Scene& scene) {
-  Checksum sum;
-  sum.add(scene_text(scene));
-  sum.add(version());
-  sum.add(read_text_file("/proc/self/exe").text);
-  return magic + sum.text() + "\n";
-}
-
-bool UnfinishedRun::of_scene(const fs::path& directory, const Scene& scene) {
-  std::ifstream in(directory / "unfinished" / "checkpoint", std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  return text.starts_with(magic) && text.starts_with(head(scene));
-}
-
 bool UnfinishedRun::find() {
-  if (lies_in(written_.directory())) keep_foreign_aside();
-  if (!lies_in(written_.directory())) return false;
+  if (holds_checkpoint(written_.directory())) keep_foreign_aside();
+  if (!holds_checkpoint(written_.directory())) return false;
   const fs::path path = folder() / "checkpoint";
   std::ifstream in(path, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   if (!in) throw FileError(path, "cannot be read");
-  const std::string first = head(scene_);
-  if (!text.starts_with(magic) || text.size() < first.size() + 17)
+  const std::string first = checkpoint_head(scene_);
+  if (!text.starts_with(checkpoint_magic) || text.size() < first.size() + 17)
     throw FileError(path, "is no checkpoint of a run; --force begins anew");
   if (!text.starts_with(first))
     throw FileError(folder(),
@@ -188,7 +165,7 @@ void UnfinishedRun::take(Part& part) {
 void UnfinishedRun::keep() {
   if (last_.empty()) return;
   tables_->flush_to_disk();
-  if (head_.empty()) head_ = head(scene_);
+  if (head_.empty()) head_ = checkpoint_head(scene_);
   FileWatcher* const watcher = watch_files(nullptr);  // listed by its name, not by its bytes
   write_file_atomically(folder() / "checkpoint", head_ + sum_of(last_) + "\n" + last_);
   watch_files(watcher);

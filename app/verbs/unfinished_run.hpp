@@ -28,10 +28,6 @@ class UnfinishedRun {
   UnfinishedRun(WrittenFiles& written, const Scene& scene, std::shared_ptr<const Model> model, double seconds,
                 Beside beside);
 
-  static bool lies_in(const std::filesystem::path& directory);
-  // One lies there that a run of this scene by this very program goes on with.
-  static bool of_scene(const std::filesystem::path& directory, const Scene& scene);
-  static std::string head(const Scene& scene);  // with which its checkpoint begins
   // Throws FileError where one does that `who` ("a film") cannot go on with.
   static void refuse_in(const std::filesystem::path& directory, const std::string& who);
   // Reads the checkpoint, if there is one. Throws FileError where it is of another run or damaged.

@@ -11,9 +11,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/output/checkpoint_head.hpp"
 #include "app/output/film_folder.hpp"
 #include "app/panel/document/own_file.hpp"
-#include "app/verbs/unfinished_run.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/scene/text_file.hpp"
 #include "render/image/child_process.hpp"
@@ -129,17 +129,17 @@ std::string export_command(const SceneDocument& document, const ExportKind& kind
 
 std::string export_goes_on_with(const SceneDocument& document, const ExportKind& kind,
                                 const std::string& output) {
-  const bool run = UnfinishedRun::lies_in(output);
+  const bool run = holds_checkpoint(output);
   if (kind.verb == "figure" || (kind.verb == "run" ? !run || !kind.formats.empty() : run)) return "";
   SceneDocument exported = document;
   exported.name = exported_scene(document, output, file_holds(document));  // may be its title
   const Scene scene = read_document(exported);
-  if (run) return UnfinishedRun::of_scene(output, scene) ? "an unfinished run" : "";
+  if (run) return holds_checkpoint_of(scene, output) ? "an unfinished run" : "";
   return FilmFolder(output, scene).holds_this() ? "a film" : "";
 }
 
 bool export_loses_run(const ExportKind& kind, const std::string& output) {
-  return kind.verb != "figure" && UnfinishedRun::lies_in(output);
+  return kind.verb != "figure" && holds_checkpoint(output);
 }
 
 SceneDocument saved_document(const SceneDocument& document, const std::string& path, WrittenBack& written) {

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "app/output/checkpoint_head.hpp"
 #include "app/output/film_folder.hpp"
 #include "app/panel/document/own_file.hpp"
 #include "app/panel/runs/export_process.hpp"
 #include "app/panel/runs/study_job.hpp"
-#include "app/verbs/unfinished_run.hpp"
 #include "core/scene/reader.hpp"
 #include "core/scene/write.hpp"
 #include "core/scene/write_back.hpp"
@@ -202,7 +202,7 @@ TEST_CASE("an export into the folder of an unfinished run or film of its scene o
   };
   const auto run_of = [&](const std::string& file) {
     scratch.write("run/unfinished/checkpoint",
-                  UnfinishedRun::head(read_scene_file(scratch / file, {"solver.step=0.01"})));
+                  checkpoint_head(read_scene_file(scratch / file, {"solver.step=0.01"})));
   };
   const Answers go_on{"Go on", "Begin anew", "Cancel"}, replace{"Replace", "Cancel"};
   const std::size_t film = 0, figures = 1, data = 2, gltf = 3;
