@@ -31,10 +31,11 @@ constexpr double good_constraint = 1e-4;  // of a rod's length: beyond it there 
 // Of the largest velocity, what accelerations within a step may miss of its change: for the quintic, which is
 // cheap, and for a step of the method to each time.
 constexpr double good_quintic = 1e-5, good_step = 0.1;
-constexpr double still = 1e-14;  // of the coordinates: a motion that is rounding
+constexpr double still = 1e-14, no_step = 1e-8;  // of the coordinates, of the longest step: rounding alone
 
 bool follows(const Trajectory& run, std::size_t a, std::size_t b) {
-  return !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b);
+  const double h = run.time(b) - run.time(a), least = no_step * run.options().step;
+  return h > least && !same_instant(run.time(a), run.time(b)) && &run.model(a) == &run.model(b);
 }
 
 // What is kept of a run that is not kept whole (RunDigest) stands alone: no step leads to or from it.
@@ -261,8 +262,7 @@ std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& va
     for (const double u : {0.25, 0.5, 0.75})
       piece.trajectory.append(t.state_at(t.time(k) + u * (t.time(k + 1) - t.time(k))), StepReport{});
     double most = -std::numeric_limits<double>::infinity();
-    for (const double x : values(piece))
-      if (x > most) most = x;
+    for (const double x : values(piece)) most = std::max(most, x);  // not a NaN
     found.push_back({most, k});
   }
   std::ranges::stable_sort(found, std::greater(), [](const auto& f) { return f.first; });

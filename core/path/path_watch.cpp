@@ -10,6 +10,7 @@ namespace {
 // As the time loop has them (simulate/stepper_loop.hpp): the deployed pose counts as reached anew from this
 // sine of the fold angle on; what is met with it.
 constexpr double singular_margin = 1e-4, deployed_already = 1e-12, at_once = 1e-8;
+constexpr double now = 1e-12;          // of a step
 constexpr int samples = 24;            // within a step
 constexpr double never_moves = 1e-11;  // over a piece of the path, of a turn or of the structure's length
 
@@ -166,7 +167,8 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
         left = margin(motion, end, i);
       }
       if (!below(i, left) || !(a[i] > left)) continue;
-      const double t = zero_of(motion, i, t0, end);
+      double t = zero_of(motion, i, t0, end);
+      if (t - from <= now * step_) t = from;  // rounding puts it there
       const double tie = i == deployed ? at_once * step_ : 0;
       if (t < first.first + tie || first.second < 0) first = {t, static_cast<int>(i)};
     }

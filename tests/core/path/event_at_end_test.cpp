@@ -3,11 +3,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/measures.hpp"
 #include "core/path/path_run.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "core/study/reference.hpp"
+#include "core/study/table.hpp"
 
 using namespace unfurl;
 
@@ -86,6 +89,41 @@ TEST_CASE("a run ends where something happens, and steps do, by rounding") {
     }
   }
   CHECK(tried >= 300);
+}
+
+// A bob that swings into a stop which it touches at the start, in whatever direction its coordinate is taken:
+// rounding puts some a little before the stop. It turns back at t = 0 (restitution 1), and keeps its energy:
+// m v^2 / 2 and what it falls by. Nothing is faster than sqrt(v^2 + 2 g (1 + z0)), at the lowest point.
+TEST_CASE("what strikes a stop that it touches at the start strikes it at once") {
+  const double m = 1.5, g = 9.81, v = 0.8;
+  for (int k = 0; k < 40; ++k) {
+    const double a = 0.3 + 0.061 * k, tilt = a + 0.4 * std::sin(7.0 * k);  // from the vertical
+    const double x = std::sin(a), z = -std::cos(a), dx = -std::cos(tilt), dz = -std::sin(tilt);
+    CAPTURE(k);
+    const auto vec = [](double a_x, double a_z) {
+      return "[" + exact_number(a_x) + ", 0, " + exact_number(a_z) + "]";
+    };
+    const Scene scene = read_scene_text(
+        "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'O'\nposition = [0, 0, 0]\nfixed = true\n"
+        "[[structure.nodes]]\nname = 'P'\nmass = " +
+            exact_number(m) + "\nposition = " + vec(x, z) +
+            "\nvelocity = " + vec(-v * std::cos(a), -v * std::sin(a)) +
+            "\n[[structure.rods]]\nnodes = ['O', 'P']\nmass = 0\n[[constraints]]\nkind = 'plane'\nnodes = "
+            "['P']\nnormal = [0, 1, 0]\n[[constraints]]\nkind = 'coordinate_stop'\nname = 's'\nnodes = "
+            "['P']\nrestitution = 1\ndirection = " +
+            vec(dx, dz) + "\nmax = " + exact_number((dx * x + dz * z) / std::hypot(dx, dz)) +
+            "\n[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nend_time = 0.3\nstep = 0.01\n",
+        "bob.toml");
+    Simulation run = simulate_on_path(build_model(scene), scene.solver);
+    REQUIRE(run.status == RunStatus::completed);
+    REQUIRE(run.events.size() >= 1);
+    CHECK(run.events.front().t == 0.0);
+    const Diagnostics d = judge(run);
+    const double top = std::sqrt(v * v + 2 * g * (1 + z));
+    CHECK(find_measure("peak_speed").value(run, d) <= top * (1 + 1e-9));
+    CHECK(find_measure("peak_energy").value(run, d) <= 0.5 * m * top * top * (1 + 1e-9));
+    CHECK(find_measure("peak_rod_force").value(run, d) <= m * (g + top * top) * (1 + 1e-9));
+  }
 }
 
 }  // namespace event_at_end_test
