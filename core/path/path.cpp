@@ -41,6 +41,15 @@ double size_of(const System& system, const VectorXd& z) {
   return wide > 0 ? wide : 1.0;
 }
 
+// What round-off is a share of: the size, and of what stands far from the origin its coordinates.
+double grain_of(const System& system, const VectorXd& z, double size) {
+  constexpr double far = 300;
+  VectorXd q(system.coordinates());
+  system.expand(z, q);
+  const double reach = q.size() > 0 ? q.lpNorm<Eigen::Infinity>() : 0.0;
+  return reach > far * size ? reach : size;
+}
+
 // Largest of the last coefficients, and of those before.
 struct Tail {
   double last = 0.0, before = 0.0;
@@ -78,6 +87,7 @@ class Path::Tracer {
         G_(system.jacobian_pattern()),
         saddle_(system.mass(), G_, 1),
         size_(size_of(system, z)),
+        grain_(grain_of(system, z, size_)),
         q_(system.coordinates()),
         phi_(system.constraints()),
         y_(phi_.size()),
@@ -87,6 +97,7 @@ class Path::Tracer {
         points_(chebyshev_points(degree)) {}
 
   double size() const { return size_; }
+  double grain() const { return grain_; }
   void end_below(double length) { least_ = length; }  // of a piece
 
   // The pose nearest to z and a direction, the projection of `wanted` on the null space of G there, of unit
@@ -118,14 +129,14 @@ class Path::Tracer {
     for (int halvings = 0; halvings < most_halvings && length > least_; ++halvings, length *= 0.47) {
       if (!solve_points(z, tangent, length)) continue;
       const Fit left = fit(piece);
-      if (!left.poses.ends(fine * size_, rough * size_) ||
-          !left.tangents.ends(fine * size_, rough_tangent * size_))
+      if (!left.poses.ends(fine * grain_, rough * grain_) ||
+          !left.tangents.ends(fine * grain_, rough_tangent * grain_))
         continue;
-      if (left.tangents.last > fine * size_)
+      if (left.tangents.last > fine * grain_)
         piece.noise = left.tangents.last / ((piece.b - piece.a) * piece.tangent.cwiseAbs().maxCoeff());
       z = Z_.col(degree);
       tangent = T_.col(degree);
-      const int used = coefficients_above(piece.z, std::max(fine * size_, 3 * left.poses.last));
+      const int used = coefficients_above(piece.z, std::max(fine * grain_, 3 * left.poses.last));
       if (used < 18) length *= used < 14 ? 1.7 : 1.25;
       return true;
     }
@@ -176,7 +187,7 @@ class Path::Tracer {
       if (!x_.allFinite()) return false;
       z += x_;
       const double change = x_.size() ? x_.lpNorm<Eigen::Infinity>() : 0.0;
-      if (change <= settled * size_ || (change <= nearly * size_ && change > 0.25 * last)) return true;
+      if (change <= settled * grain_ || (change <= nearly * grain_ && change > 0.25 * last)) return true;
       last = change;
     }
     return false;
@@ -266,7 +277,7 @@ class Path::Tracer {
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
-  double size_;
+  double size_, grain_;
   VectorXd q_, phi_, phi_rate_, y_, x_, no_rows_, no_force_, points_;
   MatrixXd Z_, T_;  // of the points of the present piece
   VectorXd slope_;
@@ -350,7 +361,7 @@ bool Path::point(double s, VectorXd& z, VectorXd& tangent) const {
 
 std::optional<double> Path::locate(const VectorXd& z, long most, int towards) const {
   VectorXd at(z.size()), tangent(z.size());
-  const double touching = 1e-12 * tracer_->size();
+  const double touching = 1e-12 * tracer_->grain();
   for (long i = 0; i < 2 * most; ++i) {
     const long out = i / 2;
     const bool ahead = (i % 2 == 0) == (towards > 0);
