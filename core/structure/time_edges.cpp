@@ -41,11 +41,16 @@ void add_points_of_spline(const TimeFunction& f, double step, std::vector<TimeEd
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   const auto [low, high] = std::minmax_element(f.values.begin(), f.values.end());
-  const double stands_out = std::max(1e-5 * (*high - *low), 30 * *middle);
-  const double near = (1 - 1e-9) * step;
-  for (std::size_t i = 1; i + 1 < x.size(); ++i)
-    if (kink[i] > stands_out || (x[i] - x[i - 1] >= near && x[i + 1] - x[i] >= near))
-      edges.push_back({x[i], false});
+  const double usual = 30 * *middle, range = *high - *low, near = (1 - 1e-9) * step;
+  double fastest = 0;
+  for (std::size_t i = 1; i < x.size(); ++i)
+    fastest = std::max(fastest, std::abs(f.values[i] - f.values[i - 1]) / (x[i] - x[i - 1]));
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    const double before = x[i] - x[i - 1], after = x[i + 1] - x[i];
+    // Of points that lie close, as those that follow an end at speed, none is seen in the values themselves.
+    const bool stands_out = kink[i] > 1e-5 * range || kink[i] > 1e-6 * fastest * std::min(before, after);
+    if ((stands_out && kink[i] > usual) || (before >= near && after >= near)) edges.push_back({x[i], false});
+  }
 }
 
 void add_edges(const TimeFunction& f, double step, std::vector<TimeEdge>& edges) {
