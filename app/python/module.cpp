@@ -216,9 +216,14 @@ class SteppedScene {
   }
   bool advance_to(double t) {
     if (std::isnan(t)) throw py::value_error("a stepper advances to a time [s], not to NaN");
-    const py::gil_scoped_release release;
-    const std::lock_guard lock(*use_);
-    return goes_on_ = stepper_.advance_to(t);
+    Asker asker;
+    {
+      const py::gil_scoped_release release;
+      const std::lock_guard lock(*use_);
+      goes_on_ = stepper_.advance_to(t, [&asker] { return asker(); });
+    }
+    asker.raise();
+    return goes_on_;
   }
   // Another thread may be stepping.
   template <class Part>
@@ -282,10 +287,17 @@ class SteppedScene {
   }
   std::shared_ptr<Run> finish() const {
     const bool forced = alone([this] { return !forces_.empty(); });
-    const py::gil_scoped_release release;
     const char* made_by =
         !forced ? "stepper().finish()" : "stepper(), with forces set between steps, finish()";
-    return std::make_shared<Run>(scene_, so_far(), use_, std::function<bool()>(), made_by);
+    Asker asker;
+    const std::function<bool()> cancelled = [&asker] { return asker(); };
+    std::shared_ptr<Run> made;
+    {
+      const py::gil_scoped_release release;
+      made = std::make_shared<Run>(scene_, so_far(), use_, cancelled, made_by);
+    }
+    asker.raise();
+    return made;
   }
 
  private:

@@ -37,7 +37,7 @@ bool StateForces::near_singular(std::size_t i) {
 void StateForces::solve_from(std::size_t i) {
   if (model_ != &trajectory_.model(i)) {
     model_ = &trajectory_.model(i);
-    lanes_.emplace(model_->system);
+    if (!lanes_ || !lanes_->take_loads_of(model_->system)) lanes_.emplace(model_->system);
   }
   std::vector<const State*> states;
   for (std::size_t k = i; states.size() < SaddleLanes::lanes && k < trajectory_.size() &&
@@ -110,9 +110,11 @@ bool StateForces::smooth(std::size_t i) {
 StateForces::Close StateForces::look_closely(std::size_t model_of, const State& state) {
   if (close_ != &trajectory_.model(model_of)) {
     close_ = &trajectory_.model(model_of);
-    one_.reset();
-    system_ = std::make_unique<System>(close_->system);
-    one_ = std::make_unique<Index1>(*system_, true);
+    if (!system_ || !system_->take_loads_of(close_->system)) {
+      one_.reset();
+      system_ = std::make_unique<System>(close_->system);
+      one_ = std::make_unique<Index1>(*system_, true);
+    }
   }
   Close out;
   out.t = state.t;

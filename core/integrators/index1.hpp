@@ -69,6 +69,7 @@ class Index1 {
 class Index1Lanes {
  public:
   explicit Index1Lanes(const System& system);
+  bool take_loads_of(const System& system) { return system_.take_loads_of(system); }
   void evaluate(std::span<const State* const> states);  // at most SaddleLanes::lanes
   // Of the k-th of them; false where Index1::evaluate would say so.
   bool ok(std::size_t k) const { return ok_[k]; }

@@ -6,8 +6,7 @@
 
 namespace unfurl {
 
-std::shared_ptr<const Model> pushed_model(const Model& model, std::size_t own, int node, const Vec3& force,
-                                          bool eliminate_linear) {
+std::shared_ptr<const Model> pushed_model(const Model& model, std::size_t own, int node, const Vec3& force) {
   if (node < 0 || static_cast<std::size_t>(node) >= model.structure.nodes.size())
     throw std::out_of_range("no solved node has the index " + std::to_string(node));
   Structure structure = model.structure;
@@ -20,7 +19,7 @@ std::shared_ptr<const Model> pushed_model(const Model& model, std::size_t own, i
     structure.loads.push_back({node, force});
   else
     pushed->force = force;
-  System system(structure, eliminate_linear);
+  System system = model.system.loaded(structure);
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
 }
 

@@ -388,8 +388,8 @@ Stepper::~Stepper() = default;
 bool Stepper::step() {
   return loop_->step();
 }
-bool Stepper::advance_to(double t) {
-  return loop_->advance_to(t);
+bool Stepper::advance_to(double t, const std::function<bool()>& cancelled) {
+  return loop_->advance_to(t, cancelled);
 }
 void Stepper::set_force(int node, const Vec3& force) {
   loop_->set_force(node, force);

@@ -27,8 +27,8 @@ class Stepper {
   // the deployed pose or by a failure; run().status and run().message say which.
   bool step();
   // To this time, at most the end time; the step before it is shortened, the grid stays as it is. False where
-  // the run ended before.
-  bool advance_to(double t);
+  // the run ended before; once `cancelled` says so it stays where it is, and can go on from there.
+  bool advance_to(double t, const std::function<bool()>& cancelled = {});
 
   double time() const { return state().t; }
   const State& state() const { return run_.trajectory.state(run_.trajectory.size() - 1); }

@@ -87,9 +87,9 @@ class Stepper::Loop {
 
   bool step() { return !ended_ && now().t < grid_.end() && go(next_target()); }
 
-  bool advance_to(double t) {
+  bool advance_to(double t, const std::function<bool()>& cancelled) {
     const double until = std::min(t, grid_.end());
-    while (!ended_ && now().t < until) {
+    while (!ended_ && now().t < until && !(cancelled && cancelled())) {
       TimeGrid::Target target = next_target();
       if (target.t > until) target = {until, until - now().t};
       if (!go(target)) return false;
@@ -98,12 +98,15 @@ class Stepper::Loop {
   }
 
   void set_force(int node, const Vec3& force) {
-    const auto pushed = pushed_model(*base_, run_.trajectory.structure().loads.size(), node, force,
-                                     run_.options.eliminate_linear);
+    const auto pushed = pushed_model(*base_, run_.trajectory.structure().loads.size(), node, force);
     if (ended_ || !pushed) return;
     base_ = pushed;
-    set_model(sides_.any_active() ? sides_.model(*base_) : base_, in_base(now()),
-              run_.trajectory.size() > 1 || new_ > 0);
+    // Of several that are set at one time, all act at once.
+    const bool begun = !std::exchange(pushed_, true) && (run_.trajectory.size() > 1 || new_ > 0);
+    if (sides_.any_active())
+      set_model(sides_.model(*base_), in_base(now()), begun);
+    else
+      enter(base_, State(now()), begun);
   }
 
   void end() { ended_ = true; }
@@ -138,6 +141,7 @@ class Stepper::Loop {
   bool go(const TimeGrid::Target& target) try {
     target_ = target.t;
     edge_ = target.edge;
+    pushed_ = false;
     double h = target.h;
     in_step_ = 0;
     while (now().t < target_) {
@@ -404,11 +408,13 @@ class Stepper::Loop {
 
   // Goes on from a state in the coordinates of the base with another model of the same structure.
   void set_model(const std::shared_ptr<const Model>& next, const State& from, bool handed_over) {
-    Handover after = hand_over(*base_, from, *next);
+    enter(next, hand_over(*base_, from, *next).state, handed_over);
+  }
+  void enter(const std::shared_ptr<const Model>& next, State state, bool handed_over) {
     if (!handed_over) run_.trajectory.pop_back();  // the first state of all
     run_.trajectory.change_model(next);
     present_ = next;
-    append(std::move(after.state), StepReport{});
+    append(std::move(state), StepReport{});
     model_changed();
   }
 
@@ -474,8 +480,8 @@ class Stepper::Loop {
   std::unique_ptr<Integrator> integrator_, probing_;
   std::optional<StepControl> control_;
   const System* controlled_ = nullptr;
-  Probe begin_;  // the present state
-  bool have_begin_ = false;
+  Probe begin_;                               // the present state
+  bool have_begin_ = false, pushed_ = false;  // pushed: since the last step
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
   bool deployed_ = false, ended_ = false, regular_ = false;

@@ -9,7 +9,10 @@ Trajectory::Trajectory(std::shared_ptr<const Model> model, const SolverOptions& 
     : models_{{0, std::move(model)}}, dense_(std::make_shared<DenseOutput>(options)) {}
 
 void Trajectory::change_model(std::shared_ptr<const Model> model) {
-  models_.push_back({size(), std::move(model)});
+  if (models_.size() > 1 && models_.back().first == size())
+    models_.back().model = std::move(model);
+  else
+    models_.push_back({size(), std::move(model)});
 }
 
 const Trajectory::Part& Trajectory::part_of(std::size_t i) const {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/constraints/linear_rows.hpp"
+#include "core/forces/constant_forces.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/system/elimination_choice.hpp"
 #include "core/system/mass_matrix.hpp"
@@ -148,17 +149,16 @@ void System::Data::build_coordinates() {
 }
 
 void System::Data::build_forces(const Structure& structure) {
-  constant_force = loads = gravity_force = VectorXd::Zero(coordinates);
+  unloaded_force = VectorXd::Zero(coordinates);
   for (const ForceKind& kind : force_kinds()) {
     auto block = kind.make(structure, node_mass);
     if (!block) continue;
     if (const auto* rods = dynamic_cast<const ElasticRods*>(block.get())) elastic_rods = rods;
-    if (block->constant())
-      block->add(0.0, start.data(), start.data(), 1.0, constant_force.data());
-    else
+    if (!block->constant())
       forces.push_back(std::move(block));
+    else if (kind.make != nodal_load_block)
+      block->add(0.0, start.data(), start.data(), 1.0, unloaded_force.data());
   }
-  for (const Load& load : structure.loads) loads.segment<3>(3 * load.node) += load.force;
   gravity_force = node_mass * structure.gravity.replicate(coordinates / 3, 1);
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
     if (structure.nodes[i].ghost) gravity_force.segment<3>(3 * static_cast<Index>(i)).setZero();
@@ -243,8 +243,26 @@ System::System(const Structure& structure, bool eliminate_linear) {
   for (std::size_t i = 0; i < structure.rods.size(); ++i)
     if (structure.rods[i].gives) data->giving.push_back(static_cast<int>(i));
   data_ = std::move(data);
+  set_loads(structure);
   std::vector<double> scratch;
   jacobian(data_->start, data_->pattern, scratch);  // tells which entries are large
+}
+
+System System::loaded(const Structure& structure) const {
+  System out = *this;
+  out.set_loads(structure);
+  return out;
+}
+bool System::take_loads_of(const System& other) {
+  if (data_ != other.data_) return false;
+  constant_ = other.constant_;
+  return true;
+}
+void System::set_loads(const Structure& structure) {
+  VectorXd loads = VectorXd::Zero(data_->coordinates);
+  for (const Load& load : structure.loads) loads.segment<3>(3 * load.node) += load.force;
+  VectorXd force = data_->unloaded_force + loads;
+  constant_ = std::make_shared<const Constant>(Constant{std::move(loads), std::move(force)});
 }
 
 System::~System() = default;
@@ -334,7 +352,7 @@ void System::reduce_force(const ConstVec& f, MutVec r) const {
 }
 
 void System::add_applied_force(double t, const ConstVec& q, const ConstVec& v, double scale, MutVec f) const {
-  f += scale * data_->constant_force;
+  f += scale * constant_->force;
   for (const auto& block : data_->forces) block->add(moment(t), q.data(), v.data(), scale, f.data());
 }
 

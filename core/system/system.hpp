@@ -38,6 +38,10 @@ class System {
   ~System();
   System(const System&);
   System(System&&) noexcept;
+  // The same equations with the loads of this structure, which is the same but for them; of little cost.
+  System loaded(const Structure& structure) const;
+  // Becomes the other one where the two differ by their loads only; false where they do not.
+  bool take_loads_of(const System& other);
 
   // Angles that count turns (followed_angles of the structure), and taking them near those of a state.
   Index followed_angles() const;
@@ -166,9 +170,14 @@ class System {
 
  private:
   struct Data;
+  struct Constant {
+    VectorXd loads, force;  // force: of all that does not depend on t, q or v, loads among it [N]
+  };
+  void set_loads(const Structure& structure);
   void measure_angles(const State& state);
 
   std::shared_ptr<Data> data_;
+  std::shared_ptr<const Constant> constant_;
   // Of the state that is followed, and where it was measured last; empty: none is followed.
   VectorXd angles_, rates_, measured_, measured_rates_;
   VectorXd q_, v_;  // where it was measured

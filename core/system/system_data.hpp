@@ -15,8 +15,8 @@ struct System::Data {
   std::vector<std::unique_ptr<ConstraintBlock>> owned;
   ConstraintBlocks all, kept, linear, leaving;      // leaving: linear ones, eliminated where that pays
   std::vector<std::unique_ptr<ForceBlock>> forces;  // those that depend on t, q or v
-  VectorXd constant_force;                          // the sum of the others [N]
-  VectorXd loads, gravity_force;                    // its parts, for energies
+  VectorXd unloaded_force;                          // the sum of the others but the loads [N]
+  VectorXd gravity_force;                           // its part, for energies
   SparseRows node_mass, mass, B, B_transposed;
   VectorXd q0, start;
   std::vector<int> free_coordinates, ghosts;

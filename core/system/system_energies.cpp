@@ -25,7 +25,7 @@ double System::potential_energy(const ConstVec& q) const {
   return sum;
 }
 double System::load_work(const ConstVec& q) const {
-  return data_->loads.dot(q - data_->start);
+  return constant_->loads.dot(q - data_->start);
 }
 
 bool System::has_power(bool dissipative) const {

@@ -24,7 +24,7 @@ const ElasticRods* System::elastic_rods() const {
 
 void System::add_other_force(double t, const ConstVec& q, const ConstVec& v, const ConstVec& tension,
                              double scale, MutVec f) const {
-  f += scale * data_->constant_force;
+  f += scale * constant_->force;
   const Moment at = moment(t, tension.data());
   for (const auto& block : data_->forces)
     if (!block->of_giving_rods()) block->add(at, q.data(), v.data(), scale, f.data());
