@@ -56,8 +56,11 @@ class Search {
         seen_.empty() || !std::isfinite(seen_.front().value) ? 0 : std::abs(seen_.front().value);
     return exact(e) || off(e) <= (target_ == 0 ? 1e-30 * first : 4e-16 * std::abs(target_));
   }
-  // To where the measure is not there.
-  static double closest(double x) { return 1e-9 * std::max(std::abs(x), 1e-3); }
+  // To where the measure is not there; in units of what one begins with, whatever its unit.
+  double closest(double x) const {
+    const double begun = o_.start != 0 ? o_.start : std::max(std::abs(o_.low), std::abs(o_.high));
+    return 1e-9 * std::max(std::abs(x), 1e-3 * (begun != 0 && std::isfinite(begun) ? std::abs(begun) : 1.0));
+  }
   bool opposite(const Evaluation& a, const Evaluation& b) const {
     return valid(a) && valid(b) && (a.value < target_) != (b.value < target_);
   }

@@ -128,6 +128,19 @@ TEST_CASE("a target of zero is met as well as any, and at an end that was given"
   }
 }
 
+// The measure is that of a parameter in another unit: what counts is its share of where the search begins.
+TEST_CASE("a root is found in any unit of the parameter, beside a wall too") {
+  for (const double unit : {1e-30, 1e-12, 1e-6, 1.0, 1e9}) {
+    CAPTURE(unit);
+    const auto cube = [&](double x) { return std::pow(x / unit, 3); };
+    CHECK(solve_for(cube, 7.0, {.start = unit}, {}).x == Approx(std::cbrt(7.0) * unit).epsilon(1e-9));
+    const auto walled = [&](double x) { return x > 2 * unit ? std::nan("") : cube(x); };
+    CHECK(solve_for(walled, 7.999, {.start = unit}, {}).x == Approx(std::cbrt(7.999) * unit).epsilon(1e-9));
+    CHECK(solve_for(walled, 7.999, {.low = unit / 4, .high = 2 * unit}, {}).x ==
+          Approx(std::cbrt(7.999) * unit).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("the search approaches a wall behind which parameters are invalid") {
   // Like the deployment time near dead centre: it grows without end towards 90.
   const auto f = [](double x) { return x < 90 ? -std::log(90 - x) : none; };
