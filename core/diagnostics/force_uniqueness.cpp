@@ -82,7 +82,11 @@ void ForceUniqueness::examine(const Simulation& run, const RestingRows& resting,
   for (const std::size_t i : looked_at(run, first, last, is_known, ends)) seen[i] = determined_at(i, {});
   examined_ += seen.size();
   std::vector<char>& rigid = known_.rigidly;
-  for (const auto& [i, determined] : seen) any_of_both(rigid, determined);
+  // A pose without rank determines nothing that others do not, but for the rounding of its coordinates.
+  const auto votes = [&](std::size_t i) { return !run.trajectory.report(i).singular_event; };
+  const bool any_votes = std::ranges::any_of(seen, [&](const auto& pose) { return votes(pose.first); });
+  for (const auto& [i, determined] : seen)
+    if (votes(i) || (!any_votes && !is_known)) any_of_both(rigid, determined);
   for (auto& [i, determined] : seen)
     if (determined != rigid && !run.trajectory.report(i).singular_event) singular_[i] = std::move(determined);
   rigidly_[first] =
@@ -91,7 +95,8 @@ void ForceUniqueness::examine(const Simulation& run, const RestingRows& resting,
   if (rigidly_[first] || compliance.size() == 0) {
     known_.usual = rigid;
   } else {
-    for (const auto& [i, unused] : seen) any_of_both(known_.usual, determined_at(i, compliance));
+    for (const auto& [i, unused] : seen)
+      if (votes(i) || (!any_votes && !is_known)) any_of_both(known_.usual, determined_at(i, compliance));
     open_where_rank_falls(run, seen);
   }
   usual_[first] = known_.usual;

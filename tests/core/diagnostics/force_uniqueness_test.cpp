@@ -224,4 +224,20 @@ end_time = 0.05
   CHECK(peak_rod_force(d).unique);
 }
 
+// A ring is the same from every bay, whatever rounding makes of the pose without rank that it is deployed in:
+// in no state does one chord have a unique force and another one not. Their halves carry a state of
+// self-stress.
+TEST_CASE("what is unique in one bay of a ring is unique in all") {
+  for (const int units : {7, 9, 12}) {
+    CAPTURE(units);
+    const Simulation run = library_run("hoop12", {"structure.units=" + std::to_string(units)});
+    const Diagnostics d = diagnose(run);
+    const std::vector<Rod>& rods = run.trajectory.structure().rods;
+    REQUIRE(d.force_unique.cols() == std::ssize(rods));
+    for (std::size_t r = 0; r < rods.size(); ++r)
+      if (rods[r].name.find('M') != std::string::npos)
+        CHECK(d.force_unique.col(static_cast<Index>(r)).maxCoeff() == 0);
+  }
+}
+
 }  // namespace force_uniqueness_test
