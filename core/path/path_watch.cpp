@@ -11,6 +11,7 @@ namespace {
 // sine of the fold angle on; what is met with it.
 constexpr double singular_margin = 1e-4, deployed_already = 1e-12, at_once = 1e-8;
 constexpr double now = 1e-12;          // of a step
+constexpr double deployed_at = 1e-12;  // what rounding leaves of the deployed pose, as a share of the way
 constexpr int samples = 24;            // within a step
 constexpr double never_moves = 1e-11;  // over a piece of the path, of a turn or of the structure's length
 
@@ -159,15 +160,17 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
     const auto below = [&](Index i, double m) { return i < deployed ? m < -1 : armed_ && m <= 0; };
     for (Index i = 0; i <= deployed; ++i) {
       double end = t1, left = b[i];
+      bool touches = false;
       if (!below(i, left) && rates_a[i] < 0 && rates_b[i] > 0) {
         // It cannot have fallen further than at the steeper of both rates.
         const double reach = std::max(-rates_a[i], rates_b[i]) * (t1 - t0);
         if (!below(i, std::min(a[i], b[i]) - reach)) continue;
         end = least_between(motion, i, t0, t1);
         left = margin(motion, end, i);
+        touches = i == deployed && armed_ && left > 0 && left <= deployed_at;  // at a dead centre
       }
-      if (!below(i, left) || !(a[i] > left)) continue;
-      double t = zero_of(motion, i, t0, end);
+      if ((!below(i, left) && !touches) || !(a[i] > left)) continue;
+      double t = touches ? end : zero_of(motion, i, t0, end);
       if (t - from <= now * step_) t = from;  // rounding puts it there
       const double tie = i == deployed ? at_once * step_ : 0;
       if (t < first.first + tie || first.second < 0) first = {t, static_cast<int>(i)};

@@ -54,10 +54,9 @@ std::optional<State> step_to_deployed(const Model& model, Integrator& integrator
   });
 }
 
-std::optional<double> step_to_dip(const Model& model,
-                                  const std::function<std::unique_ptr<Integrator>()>& fresh,
-                                  const State& from, const State& to, double h, double margin,
-                                  const Probe* behind) {
+std::optional<Dip> step_to_dip(const Model& model, const std::function<std::unique_ptr<Integrator>()>& fresh,
+                               const State& from, const State& to, double h, double margin,
+                               const Probe* behind) {
   if (!deploys_regularly(model.structure)) return std::nullopt;
   struct At {
     double length, left, rate;
@@ -78,19 +77,24 @@ std::optional<double> step_to_dip(const Model& model,
   if (!may_dip(low, high)) return std::nullopt;
   const std::unique_ptr<Integrator> integrator = fresh();
   constexpr int most = 60;
-  for (int i = 0; i < most && may_dip(low, high); ++i) {
+  constexpr double settled = 1e-14;  // of the step
+  std::optional<Dip> touched;        // within the margin, which is rounding
+  for (int i = 0; i < most && (touched || may_dip(low, high)); ++i) {
     // The rate's zero by its secant, and every third time by halves.
     const double secant = low.length - low.rate * (high.length - low.length) / (high.rate - low.rate);
     const double length = i % 3 == 2 ? 0.5 * (low.length + high.length) : secant;
     State state = from;
     integrator->restart();
     if (!(length > low.length && length < high.length) || !integrator->step(state, length).ok())
-      return std::nullopt;
+      return touched;
     const At middle = at(length, state);
-    if (middle.left <= 0) return length;
+    if (middle.left < -2 * margin) return Dip{length};
+    const double change = touched ? std::abs(length - touched->length) : h;
+    if (middle.left <= 0) touched = Dip{length, true};
+    if (change <= settled * h) return touched;
     (middle.rate < 0 ? low : high) = middle;
   }
-  return std::nullopt;
+  return touched;
 }
 
 double remaining_rate(const Model& model, const State& state) {

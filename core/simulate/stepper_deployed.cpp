@@ -47,7 +47,7 @@ std::optional<State> Stepper::Loop::locate(double h, double latest) {
 
 // How far into a step that its ends' cubic does not tell the pose is passed first, to come back from it or to
 // stay, where the step's own polynomial leads near it.
-std::optional<double> Stepper::Loop::dip_inside(const Probe& to) {
+std::optional<Dip> Stepper::Loop::dip_inside(const Probe& to) {
   State state;
   if (!deploys_regularly(model().structure) || fold(now()) <= margin_ ||
       !(off_cubic(to, 0.25, state) || off_cubic(to, 0.625, state)))
@@ -72,8 +72,8 @@ std::optional<double> Stepper::Loop::dip_inside(const Probe& to) {
     if (!(left[k] < near_zero && left[k] < left[k - 1] && left[k] <= left[k + 1])) continue;
     Probe before, after;
     if (!solve(k - 1, before) || !solve(k + 1, after)) continue;
-    if (fold(before.state) <= margin_) return before.at;
-    if (fold(after.state) <= margin_) return after.at;
+    if (fold(before.state) <= margin_) return Dip{before.at};
+    if (fold(after.state) <= margin_) return Dip{after.at};
     const auto bottom = step_to_dip(
         model(), [this] { return fresh_integrator(); }, now(), after.state, after.at, margin_, &before);
     if (bottom) return bottom;
@@ -111,16 +111,19 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
     event->t = part_end_;
     return regular_ = true;
   }
-  double within = h;
-  if (const auto dip = dip_inside(to)) {
-    within = *dip;
-  } else if (!crosses(to.state)) {
-    const auto bottom = step_to_dip(
+  std::optional<Dip> dip = dip_inside(to);
+  if (!dip && !crosses(to.state)) {
+    dip = step_to_dip(
         model(), [this] { return fresh_integrator(); }, now(), to.state, h, margin_);
-    if (!bottom) return true;
-    within = *bottom;
+    if (!dip) return true;
   }
-  event = locate(within, std::numeric_limits<double>::infinity());
+  if (dip && dip->touches) {
+    event = now();
+    regular_ = fresh_integrator()->step(*event, dip->length).ok();
+    if (!regular_) event.reset();
+  } else {
+    event = locate(dip ? dip->length : h, std::numeric_limits<double>::infinity());
+  }
   if (event && event->t > grid_.end()) return event.reset(), true;
   return event || fail("the deployed pose was passed but its time could not be located");
 }

@@ -458,7 +458,7 @@ class Stepper::Loop {
   double next_edge() const;
   std::optional<State> locate(double h, double latest);
   bool arrives(const Probe& to);
-  std::optional<double> dip_inside(const Probe& to);
+  std::optional<Dip> dip_inside(const Probe& to);
   bool find_deployed(Probe& to, double h, std::optional<State>& event);
   double uneven(const State& event);
   bool deployed(State& event, Probe& to, double h);
