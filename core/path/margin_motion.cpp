@@ -105,14 +105,23 @@ std::optional<MarginMotion::Release> MarginMotion::release(double s, double from
   return std::nullopt;
 }
 
+// Where between two poses a gap is least that closes at the first and opens at the other one; else the other.
+double MarginMotion::nearest_to_stop(std::size_t stop, double sense, double a, double b) const {
+  const auto closes = [&](double way) { return sense * watch_.gap_slope(stop, sense * way) < 0; };
+  if (!closes(a) || closes(b)) return b;
+  for (int it = 0; it < 60; ++it) (closes(0.5 * (a + b)) ? a : b) = 0.5 * (a + b);
+  return b;
+}
+
 std::optional<std::pair<double, std::string>> MarginMotion::barred(double sense, double end) const {
   std::optional<std::pair<double, std::string>> first;
   for (std::size_t i = 0; i < sides_.stops().size(); ++i) {
     double a = 0;
     for (int k = 1; k < poses_for_stops; ++k) {
-      double b = end * k / (poses_for_stops - 1);
+      const double next = end * k / (poses_for_stops - 1);
+      double b = watch_.gap(i, sense * next) < -1 ? next : nearest_to_stop(i, sense, a, next);
       if (watch_.gap(i, sense * b) >= -1) {
-        a = b;
+        a = next;
         continue;
       }
       for (int it = 0; it < 60; ++it) (watch_.gap(i, sense * 0.5 * (a + b)) < 0 ? b : a) = 0.5 * (a + b);

@@ -54,6 +54,7 @@ class MarginMotion {
 
  private:
   void begin();
+  double nearest_to_stop(std::size_t stop, double sense, double a, double b) const;
   std::optional<double> pushed_on(double end) const;
   bool set_out(double end_time, bool first);
   bool follow(double from, double to);

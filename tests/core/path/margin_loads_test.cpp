@@ -100,6 +100,27 @@ min = )" + exact_number(90 - below));
   }
 }
 
+// The lowest point is as much below the stop: between poses that are looked at the bob would be through it
+// and back. It bears the weight of the bob and half of the rod's.
+TEST_CASE("a stop that bars the least part of the way ends it") {
+  for (const double below : {1e-2, 1e-4, 1e-6, 1e-8}) {
+    CAPTURE(below);
+    const Scene scene = pendulum(
+        "kind = \"coordinate_stop\"\nname = \"floor\"\nnodes = [\"B\"]\ndirection = [0, 0, "
+        "1]\nmin = " +
+        exact_number(below - l) + "\n[deployment]\nmeasure = 'angle X O B about 0 1 0'\ndeployed = 30\n");
+    const Margin margin = margin_in(scene);
+    REQUIRE(margin.loads.size() == 1);
+    CHECK(margin.loads[0].name == "floor");
+    const double fallen = std::asin(1 - below / l);
+    // What is left of the stop's slope, sqrt(2 below / l), divides rounding.
+    const double rounding = 1e-11 / std::sqrt(below);
+    CHECK(margin.loads[0].load == Approx((bob + rod / 2) * g).epsilon(rounding));
+    CHECK(margin.loads[0].speed == Approx(l * rate(fallen) * std::cos(fallen)).epsilon(rounding));
+    CHECK(margin.loads[0].energy == Approx(energy(fallen)).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("a stop between two nodes bears a force and is met with the speed of their distance") {
   // |BX| = 2 l sin(phi / 2), phi the angle between both, so that d|BX| = l cos(phi / 2) dphi.
   const double phi = 25 * deg, fallen = 90 * deg - phi;
