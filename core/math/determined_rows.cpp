@@ -19,11 +19,11 @@ double without_structure(Index i, int trial) {
   return std::sin(1.0 + static_cast<double>((i + 1) * (5 * trial + 3)) * 0.7548776662466927) + 0.1 * trial;
 }
 
-constexpr double round_off = 1e-11;  // of entries of unit rows
+constexpr double of_poses = 1e-9;  // entries of unit rows: poses without rank are known to some 1e-11
 
 }  // namespace
 
-SparseRows without_round_off_transposed(const SparseRows& G) {
+SparseRows without_round_off_transposed(const SparseRows& G, double round_off) {
   SparseRows clean = G;
   for (Index r = 0; r < clean.rows(); ++r) {
     const double norm = clean.row(r).norm();
@@ -48,7 +48,7 @@ MatrixXd null_vectors(const SparseRows& unit) {
   MatrixXd out = MatrixXd::Zero(unit.rows(), trials);
   if (unit.rows() == 0) return out;
   if (unit.cols() == 0) return out.setOnes();  // nothing asks for anything
-  const SparseRows across = without_round_off_transposed(unit);
+  const SparseRows across = without_round_off_transposed(unit, of_poses);
   SparseRows identity(unit.rows(), unit.rows());
   identity.setIdentity();
   SaddleSolver solver(identity, across);

@@ -16,7 +16,8 @@ namespace unfurl {
 /// of the basis, and a few such vectors tell zero from not zero. One sparse factorisation, any size.
 ///
 /// Rows of G may have any scale; directions whose singular value is below some 1e-6 of that of unit rows
-/// count as lost, entries below 1e-11 as round-off. A row of zeros is not determined.
+/// count as lost, entries below 1e-9 as round-off, which is what coordinates have of poses without rank. A
+/// row of zeros is not determined.
 ///
 /// With `compliance` y has in addition the least energy 1/2 sum compliance_i y_i^2 (least_energy.hpp). Two
 /// such y differ by a vector of null(G^T) without energy, which vanishes where compliance_i > 0: those
@@ -29,8 +30,8 @@ std::vector<char> determined_rows(const SparseRows& G, const VectorXd& complianc
 std::vector<char> determined_sums(const SparseRows& G, const SparseRows& told,
                                   const VectorXd& compliance = {});
 
-/// G^T without the entries of round-off, below 1e-11 of their rows of G: solvers scale coordinates to one
-/// size and would take them for slopes. G is not changed but for those.
-SparseRows without_round_off_transposed(const SparseRows& G);
+/// G^T without the entries of round-off, below that share of their rows of G: solvers scale coordinates to
+/// one size and would take them for slopes. G is not changed but for those.
+SparseRows without_round_off_transposed(const SparseRows& G, double round_off = 1e-11);
 
 }  // namespace unfurl

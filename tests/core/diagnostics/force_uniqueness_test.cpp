@@ -238,6 +238,22 @@ TEST_CASE("what is unique in one bay of a ring is unique in all") {
       if (rods[r].name.find('M') != std::string::npos)
         CHECK(d.force_unique.col(static_cast<Index>(r)).maxCoeff() == 0);
   }
+  for (const int units : {5, 8}) {
+    CAPTURE(units);
+    const Simulation run =
+        library_run("hoop6", {"structure.model=joints", "structure.units=" + std::to_string(units),
+                              "structure.fold_angle=26.508", "solver.step=0.02", "solver.end_time=2",
+                              "solver.at_deployed=latch"});
+    const Diagnostics d = diagnose(run);
+    const std::vector<Rod>& rods = run.trajectory.structure().rods;
+    std::vector<Index> chords;
+    for (std::size_t r = 0; r < rods.size(); ++r)
+      if (rods[r].name.find('M') != std::string::npos) chords.push_back(static_cast<Index>(r));
+    REQUIRE(std::ssize(chords) == 4 * units);
+    REQUIRE(&run.trajectory.last_model() != &run.trajectory.model());  // latched
+    for (Index i = 0; i < d.force_unique.rows(); ++i)
+      for (const Index r : chords) CHECK(d.force_unique(i, r) == d.force_unique(i, chords[0]));
+  }
 }
 
 }  // namespace force_uniqueness_test
