@@ -67,7 +67,8 @@ class BalanceError {
   double lowest_ = 0, off_ = 0;
 };
 
-// By more than a millionth of the structure and than rounding of its coordinates could look like.
+// By more than a millionth of the structure and than rounding of its coordinates could look like, or of the
+// way that forces make in a step, which they do not where something holds.
 bool moves(const Simulation& run) {
   constexpr double noise = 16 * std::numeric_limits<double>::epsilon();
   const Trajectory& trajectory = run.trajectory;
@@ -76,7 +77,16 @@ bool moves(const Simulation& run) {
   if (start.size() == 0) return false;
   const Eigen::Map<const Eigen::Matrix3Xd> nodes(start.data(), 3, start.size() / 3);
   const double extent = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).maxCoeff();
-  const double least = std::max(1e-6 * extent, noise * start.lpNorm<Eigen::Infinity>());
+  const System& system = trajectory.model().system;
+  VectorXd force = VectorXd::Zero(system.coordinates());
+  system.add_applied_force(trajectory.time(0), trajectory.node_positions(0), trajectory.node_velocities(0),
+                           1.0, force);
+  const VectorXd mass = system.node_mass().diagonal();
+  double reach = start.lpNorm<Eigen::Infinity>();
+  for (Index k = 0; k < in_space; ++k)
+    if (mass[k] > 0)
+      reach = std::max(reach, std::abs(force[k]) / mass[k] * run.options.step * run.options.step);
+  const double least = std::max(1e-6 * extent, noise * reach);
   for (std::size_t i = 1; i < trajectory.size(); ++i)
     if ((trajectory.node_positions(i).head(in_space) - start).lpNorm<Eigen::Infinity>() > least) return true;
   return false;

@@ -153,6 +153,20 @@ TEST_CASE("what does not move is not warned of") {
     CHECK(j.run.status == RunStatus::completed);
     for (const auto& warning : accuracy_warnings(j.run, j.d)) FAIL(warning);
   }
+  // One mass at the origin, held by friction against less and against all that it bears: nothing has a size.
+  for (const char* load : {"0.5", "1.9", "2"}) {
+    CAPTURE(load);
+    const Judged j =
+        judged(read_scene_text("[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], "
+                               "mass = 1}]\nconstraints = [{kind = "
+                               "'line', nodes = ['A'], direction = [1, 0, 0]}]\n[[forces]]\nkind = "
+                               "'friction'\nnodes = ['A']\ndirection = [1, "
+                               "0, 0]\nkinetic = 2\n[[loads]]\nnodes = ['A']\nforce = [" +
+                                   std::string(load) + ", 0, 0]\n[solver]\nend_time = 1\n",
+                               "rest.toml"));
+    CHECK(j.run.status == RunStatus::completed);
+    for (const auto& warning : accuracy_warnings(j.run, j.d)) FAIL(warning);
+  }
 }
 
 // Two masses and their rod fall freely for 3 s, at a height that doubles tell apart by 3e-14 or by 0.5 m:
