@@ -8,6 +8,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -271,6 +272,12 @@ class SteppedScene {
       throw py::index_error("no solved node has the index " + std::to_string(index));
     return static_cast<int>(index);
   }
+  std::vector<std::string> node_names() const {
+    std::vector<std::string> names;
+    for (const Node& of : alone([this] { return &trajectory().structure(); })->nodes)
+      if (!of.ghost) names.push_back(of.name);
+    return names;
+  }
   void set_force(const py::object& key, const Vec3& force) {
     if (!force.allFinite()) throw py::value_error("a force is three finite numbers [N]");
     const int of = node(key);
@@ -335,6 +342,14 @@ class SteppedScene {
 struct NodeForces {
   SteppedScene& of;
 };
+
+// What is written into the answer would reach no force.
+py::array force_of(const NodeForces& forces, const py::object& node) {
+  const Vec3 force = forces.of.force(node);
+  py::array_t<double> array(3, force.data());
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
 
 template <class Kind>
 void add_error(py::module_& module, const char* name, const py::object& base) {
@@ -406,8 +421,13 @@ void add_scene(py::module_& module) {
   py::class_<NodeForces>(module, "NodeForces")
       .def("__setitem__", [](NodeForces& forces, const py::object& node,
                              const Vec3& force) { forces.of.set_force(node, force); })
-      .def("__getitem__",
-           [](const NodeForces& forces, const py::object& node) { return forces.of.force(node); });
+      .def("__getitem__", &force_of)
+      .def("__contains__",
+           [](const NodeForces& forces, const std::string& node) {
+             const std::vector<std::string> names = forces.of.node_names();
+             return std::ranges::find(names, node) != names.end();
+           })
+      .def("__iter__", [](const NodeForces& forces) { return py::iter(py::cast(forces.of.node_names())); });
   py::class_<SteppedScene>(module, "Stepper")
       .def(py::init([](const SceneSource& source) { return std::make_unique<SteppedScene>(source.read()); }),
            py::arg("source"))

@@ -86,7 +86,7 @@ std::string velocity_warning(const InitialState& start, const Structure& structu
   double fastest = 0;
   for (const Node& node : structure.nodes)
     if (!node.ghost) fastest = std::max(fastest, node.velocity.norm());
-  if (start.velocity_change <= 1e-9 * fastest) return {};
+  if (fastest == 0 || start.velocity_change <= 1e-9 * fastest) return {};  // none given: a drive sets out
   std::ostringstream text;
   text << "the initial velocities violate the constraints and were projected on them (largest change "
        << start.velocity_change << " m/s)";

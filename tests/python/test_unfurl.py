@@ -141,6 +141,17 @@ def test_a_stepper_ends_with_what_rods_stretch_and_with_the_warnings_of_the_star
     assert stepper.finish().warnings[:1] == rod.run().warnings[:1]
 
 
+def test_ctrl_c_ends_a_stepper_on_its_way():
+    stepper = unfurl.Scene("double_pendulum", set={"solver.step": 1e-5, "solver.end_time": 60}).stepper()
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        stepper.advance_to(60)
+    reached = stepper.t
+    assert 0 < reached < 60
+    assert stepper.step() and stepper.t > reached
+
+
 def test_forces_are_set_between_steps():
     # A free mass of 2 kg: the force of each step gives parabola after parabola.
     mass = unfurl.Scene(text="[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'P'\nposition = [1, 0, 0]\nmass = 2\n"
@@ -161,6 +172,9 @@ def test_forces_are_set_between_steps():
             stepper.advance_to(np.nan)
         with pytest.raises(KeyError):
             stepper.force["Q"] = [1, 0, 0]
+        with pytest.raises(ValueError, match="read-only"):  # it would set nothing
+            stepper.force["P"][0] = 5
+        assert "P" in stepper.force and "Q" not in stepper.force and list(stepper.force) == ["P"]
         with pytest.raises(ValueError):
             stepper.force["P"] = [np.nan, 0, 0]
         run = stepper.finish()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The compiled half of unfurl; unfurl/__init__.py is what to use."""
-from typing import Any, Mapping, Sequence
+from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -41,6 +41,8 @@ class Run:
 class NodeForces:
     def __setitem__(self, node: str | int, force: Sequence[float]) -> None: ...
     def __getitem__(self, node: str | int) -> np.ndarray: ...
+    def __contains__(self, node: str) -> bool: ...
+    def __iter__(self) -> Iterator[str]: ...
 
 class Stepper:
     t: float

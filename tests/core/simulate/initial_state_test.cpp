@@ -4,6 +4,7 @@
 
 #include "core/simulate/initial_state.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 using namespace unfurl::testing;
@@ -55,6 +56,25 @@ TEST_CASE("velocities along the rods are taken away with a warning, those that f
   CHECK(warning_of(stretched).empty());
   stretched.nodes[1].velocity.x() = 1e-3;
   CHECK(warning_of(stretched).find("0.001 m/s") != std::string::npos);
+}
+
+TEST_CASE("where a drive sets out at speed no velocity was given that would have to be warned of") {
+  const std::string led = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [1, 0, 0], mass = 2}, {name = "O", position = [0, 0, 0], fixed = true}]
+constraints = [{kind = "line", nodes = ["A"], direction = [1, 0, 0]}]
+[[constraints]]
+kind = "length"
+nodes = ["O", "A"]
+motion = "rate"
+rate = 0.2
+[solver]
+end_time = 0.1
+)";
+  CHECK(run_scene(led).warnings.empty());
+  // Against what was given, the other way.
+  CHECK(run_scene(led, {"structure.nodes[0].velocity=[-0.1, 0, 0]"}).warnings.size() == 1);
 }
 
 }  // namespace initial_state_test
