@@ -121,6 +121,23 @@ TEST_CASE("a stop that bars the least part of the way ends it") {
   }
 }
 
+// In a survey's coordinates: 1e5 m are known to 1e-11 m, series of poses along the way end at some twenty of
+// that, their slopes and what is divided by these have as much again.
+TEST_CASE("where a structure stands says nothing about its margins") {
+  const std::string bar = "kind = \"angle_stop\"\nname = \"bar\"\nnodes = [\"X\", \"O\", \"B\"]\nmin = 35";
+  for (const double shift : {1e3, 1e4, 1e5, 1e6}) {
+    CAPTURE(shift);
+    const auto at = [&](const char* node, double x, double z) {
+      return std::string("structure.nodes[") + node + "].position=[" + exact_number(x + shift) + ", " +
+             exact_number(2 * shift) + ", " + exact_number(z - shift) + "]";
+    };
+    const Margin margin = margin_in(pendulum(bar, {at("0", 0, 0), at("1", l, 0), at("2", 0, -l)}));
+    REQUIRE(margin.loads.size() == 1);
+    CHECK(margin.loads[0].load == Approx(torque(55 * deg)).epsilon(1e-12 * shift));
+    CHECK(margin.loads[0].speed == Approx(rate(55 * deg)).epsilon(1e-12 * shift));
+  }
+}
+
 TEST_CASE("a stop between two nodes bears a force and is met with the speed of their distance") {
   // |BX| = 2 l sin(phi / 2), phi the angle between both, so that d|BX| = l cos(phi / 2) dphi.
   const double phi = 25 * deg, fallen = 90 * deg - phi;
