@@ -7,18 +7,18 @@
 
 #include "core/forces/motor.hpp"
 #include "core/forces/spring.hpp"
+#include "core/simulate/stops.hpp"
 
 namespace unfurl {
 namespace {
 
 constexpr double unknown_effort = std::numeric_limits<double>::quiet_NaN();
 
-// The row of a stop that is held.
-int held_row(const Model& model, const std::string& name) {
+// The row of a side of the stops that is held.
+int held_row(const Model& model, int side) {
   const auto& constraints = model.structure.constraints;
   for (std::size_t i = constraints.size(); i-- > 0;)
-    if (constraints[i].of_stop && constraints[i].name == name)
-      return model.system.constraint_row(static_cast<int>(i));
+    if (constraints[i].side == side) return model.system.constraint_row(static_cast<int>(i));
   return -1;
 }
 
@@ -69,7 +69,7 @@ DriveSample DriveChannel::sample(const Model& model, const System& system, doubl
 }
 
 double DriveChannel::work(const Model& model, double t, const VectorXd& lambda,
-                          const std::function<double(const std::string&)>& of_reel) const {
+                          const std::function<double(int)>& of_reel) const {
   if (!by_row()) return 0.0;
   if (row(model) >= 0) return of_row(model, t, lambda).power;
   return kind_ == Kind::reel ? of_reel(cable_) : 0.0;
@@ -82,7 +82,6 @@ std::vector<DriveChannel> drive_channels(const Model& model) {
     DriveChannel channel;
     channel.kind_ = kind;
     channel.index_ = index;
-    if (kind == DriveChannel::Kind::reel) channel.cable_ = name;
     channel.name_ = name;  // a scene's names are unique in each of its tables, a program's need not be
     for (int number = 2; !taken.insert(channel.name_).second; ++number)
       channel.name_ = name + " (" + std::to_string(number) + ")";
@@ -96,8 +95,11 @@ std::vector<DriveChannel> drive_channels(const Model& model) {
     c.target_ = drive.target;
   }
   const Structure& structure = model.structure;
-  for (std::size_t i = 0; i < structure.stops.size(); ++i)
-    if (structure.stops[i].reeled) add(DriveChannel::Kind::reel, structure.stops[i].name, i);
+  const Stops stops(structure);
+  for (std::size_t i = 0; i < stops.size(); ++i)
+    if (stops[i].reeled)
+      add(DriveChannel::Kind::reel, stops[i].name, static_cast<std::size_t>(stops[i].stop)).cable_ =
+          static_cast<int>(i);
   const FollowedAngles followed = followed_angles(structure);
   for (std::size_t i = 0; i < structure.forces.size(); ++i) {
     const Force& force = structure.forces[i];

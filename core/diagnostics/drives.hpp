@@ -20,15 +20,15 @@ struct DriveSample {
 
 class DriveChannel {
  public:
-  const std::string& name() const { return name_; }    // unique
-  const std::string& cable() const { return cable_; }  // that is reeled, by its own name; empty: none is
+  const std::string& name() const { return name_; }  // unique
+  int cable() const { return cable_; }  // that is reeled, by its side among the stops; -1: none is
   bool angle() const { return angle_; }
   // At the node coordinates and velocities of a time; lambda: multipliers of the model's rows.
   DriveSample sample(const Model& model, const System& system, double t, const VectorXd& q, const VectorXd& v,
                      const VectorXd& lambda) const;
-  // What an impulse of the rows and of reeled cables, by name, puts in at that time [J].
+  // What an impulse of the rows and of reeled cables, by side, puts in at that time [J].
   double work(const Model& model, double t, const VectorXd& lambda,
-              const std::function<double(const std::string&)>& of_reel) const;
+              const std::function<double(int)>& of_reel) const;
   // Whether the effort is: `rows` says it of the multipliers of the model's rows.
   bool unique(const Model& model, const std::vector<char>& rows) const;
 
@@ -40,7 +40,8 @@ class DriveChannel {
   DriveSample of_row(const Model& model, double t, const VectorXd& lambda) const;
 
   Kind kind_ = Kind::row;
-  std::string name_, cable_;
+  std::string name_;
+  int cable_ = -1;
   bool angle_ = false;
   std::size_t index_ = 0;  // of the constraint, stop or force
   double scale_ = 1.0;     // of a row

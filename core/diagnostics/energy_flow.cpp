@@ -363,15 +363,15 @@ bool RunEnergyFlow::explain_impulse(const Model& rows, const State& a, const Sta
   if (!(unexplained <= 1e-6)) return false;
   double all = 0;
   for (const double t : {a.t, b.t}) {
-    const auto of_reel = [&](const std::string& name) {
+    const auto of_reel = [&](int side) {
       double sum = 0;
       for (std::size_t k = 0; k < met.size(); ++k)
-        if (const StopSide& stop = stops[met[k]]; name.empty() || stop.name == name)
-          sum += P[static_cast<Index>(k)] * stop.sign * stop.rate(t);
+        if (side < 0 || met[k] == static_cast<std::size_t>(side))
+          sum += P[static_cast<Index>(k)] * stops[met[k]].sign * stops[met[k]].rate(t);
       return sum;
     };
     system.target_rate(t, rate);
-    all += 0.5 * (of_reel("") - lambda.dot(rate));
+    all += 0.5 * (of_reel(-1) - lambda.dot(rate));
     for (std::size_t d = 0; d < drives_.size(); ++d)
       flow_.of_drives[d].back() += 0.5 * drives_[d].work(rows, t, lambda, of_reel);
   }

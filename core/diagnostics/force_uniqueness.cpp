@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <set>
+#include <string_view>
 
 #include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/reactions.hpp"
@@ -63,7 +64,7 @@ ForceUniqueness::ForceUniqueness(const Simulation& run, const KnownUniqueness& b
 void ForceUniqueness::examine(const Simulation& run, const RestingRows& resting, std::size_t first,
                               std::size_t last, bool ends) {
   const System& system = run.trajectory.model(first).system;
-  const std::vector<std::string> cables = resting.cables(known_.rests);
+  const std::vector<int> cables = resting.cables(known_.rests);
   const auto kept = static_cast<std::size_t>(system.constraints()), rows = kept + cables.size();
   const auto any_of_both = [](std::vector<char>& usual, const std::vector<char>& determined) {
     for (std::size_t r = 0; r < usual.size(); ++r) usual[r] = static_cast<char>(usual[r] | determined[r]);
@@ -100,9 +101,9 @@ void ForceUniqueness::examine(const Simulation& run, const RestingRows& resting,
     open_where_rank_falls(run, seen);
   }
   usual_[first] = known_.usual;
-  std::set<std::string>& open = open_cables_[first];
+  std::set<int>& open = open_cables_[first];
   for (std::size_t k = 0; k < cables.size(); ++k)
-    if (known_.usual[kept + k] == 0 && !cables[k].empty()) open.insert(cables[k]);
+    if (known_.usual[kept + k] == 0 && cables[k] >= 0) open.insert(cables[k]);
 }
 
 // Where rods lie beside others nothing may be left that rigid rods determine, and a pose without rank has no

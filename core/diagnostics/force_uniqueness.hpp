@@ -16,7 +16,6 @@
 
 #include <map>
 #include <set>
-#include <string>
 #include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
@@ -52,8 +51,8 @@ class ForceUniqueness {
   const std::vector<char>& rests(std::size_t state) const {
     return std::prev(rests_.upper_bound(state))->second;
   }
-  // Is the force of this cable, taut as it may be without a row?
-  bool unique_without_row(std::size_t state, const std::string& cable) const {
+  // Is the force of this cable, by its side among the stops, taut as it may be without a row?
+  bool unique_without_row(std::size_t state, int cable) const {
     return !std::prev(open_cables_.upper_bound(state))->second.contains(cable);
   }
   // True: rigid rods determine every force of the state's model, whatever moduli they have.
@@ -71,7 +70,7 @@ class ForceUniqueness {
   // By the first state of those of a model in which the same rests.
   std::map<std::size_t, std::vector<char>> usual_, rests_;
   std::map<std::size_t, bool> rigidly_;
-  std::map<std::size_t, std::set<std::string>> open_cables_;
+  std::map<std::size_t, std::set<int>> open_cables_;
   std::map<std::size_t, std::vector<char>> singular_;
 };
 

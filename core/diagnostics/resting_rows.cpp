@@ -80,12 +80,12 @@ VectorXd RestingRows::behind(const VectorXd& compliance, Index rows) {
   return all;
 }
 
-std::vector<std::string> RestingRows::cables(const std::vector<char>& rests) const {
-  std::vector<std::string> out;
+std::vector<int> RestingRows::cables(const std::vector<char>& rests) const {
+  std::vector<int> out;
   for (std::size_t i = 0; i < rests.size(); ++i) {
     if (!rests[i]) continue;
     const bool cable = i >= frictions_.size() && stops_[i - frictions_.size()].reeled;
-    out.push_back(cable ? stops_[i - frictions_.size()].name : "");
+    out.push_back(cable ? static_cast<int>(i - frictions_.size()) : -1);
   }
   return out;
 }

@@ -2,7 +2,6 @@
 // What may hold a structure at rest beside its constraints, and what that leaves undetermined.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "core/simulate/stops.hpp"
@@ -26,8 +25,8 @@ class RestingRows {
   SparseRows behind(const SparseRows& G, const ConstVec& q, const std::vector<char>& rests) const;
   // Compliances of the rows of such a G before it had those, and 0 of these; none stay none.
   static VectorXd behind(const VectorXd& compliance, Index rows);
-  // By added row; the names of cables, empty for all else.
-  std::vector<std::string> cables(const std::vector<char>& rests) const;
+  // By added row; of cables their side among the stops, -1 for all else.
+  std::vector<int> cables(const std::vector<char>& rests) const;
   std::vector<Measure> measures(const std::vector<char>& rests) const;
 
  private:

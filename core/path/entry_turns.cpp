@@ -135,10 +135,10 @@ bool same_entry(const Force& a, const Force& b, double size_of_all) {
 }
 
 bool same_entry(const Constraint& a, const Constraint& b, double size_of_all) {
-  const auto& [kind, name, nodes, vectors, value, measure, target, symmetry, of_stop] = a;
+  const auto& [kind, name, nodes, vectors, value, measure, target, symmetry, of_stop, side] = a;
   return kind == b.kind && nodes == b.nodes && close_to(vectors, b.vectors) && close_to(value, b.value) &&
          same_entry(measure, b.measure) && same_target(target, b.target, unit_of(measure, size_of_all)) &&
-         symmetry == b.symmetry && of_stop == b.of_stop;
+         symmetry == b.symmetry && of_stop == b.of_stop && side == b.side;
 }
 
 bool same_entry(const Rod& x, const Rod& y) {

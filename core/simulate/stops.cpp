@@ -32,12 +32,13 @@ Stops::Stops(const Structure& structure) : of_length_(of_angle * reference_lengt
                           stop.restitution,
                           stop.rest_speed,
                           followed[i],
+                          static_cast<int>(i),
                           {},
                           false});
     if (stop.reeled)
       stops_.push_back({stop.name, stop.measure, MeasureFunction(stop.measure, structure.deployment),
-                        stop.reel(0.0), -1.0, stop.restitution, stop.rest_speed, followed[i], stop.reel,
-                        true});
+                        stop.reel(0.0), -1.0, stop.restitution, stop.rest_speed, followed[i],
+                        static_cast<int>(i), stop.reel, true});
   }
 }
 
@@ -103,15 +104,22 @@ void Stops::hold(const std::set<std::size_t>& held, Structure& structure) const 
   for (const std::size_t i : held) {
     TimeFunction limit = stops_[i].reel;
     if (!stops_[i].reeled) limit.offset = stops_[i].limit;
-    structure.constraints.push_back(
-        {"measure", held_name(stops_[i]), {}, {}, 0.0, stops_[i].measure, limit, false, true});
+    structure.constraints.push_back({"measure",
+                                     held_name(stops_[i]),
+                                     {},
+                                     {},
+                                     0.0,
+                                     stops_[i].measure,
+                                     limit,
+                                     false,
+                                     true,
+                                     static_cast<int>(i)});
   }
 }
 
 bool Stops::is_held(std::size_t i, const Structure& structure) const {
-  const std::string name = held_name(stops_[i]);
   return std::ranges::any_of(structure.constraints,
-                             [&](const Constraint& c) { return c.of_stop && c.name == name; });
+                             [&](const Constraint& c) { return c.side == static_cast<int>(i); });
 }
 
 double Stops::push(std::size_t i, const Model& model, const std::set<std::size_t>& held,

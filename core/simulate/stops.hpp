@@ -32,6 +32,7 @@ struct StopSide {
   double limit, sign;
   double restitution, rest_speed;
   int followed;  // index in State::angles; -1: it counts no turns
+  int stop;      // index in Structure::stops
   TimeFunction reel;
   bool reeled = false;  // a cable: the limit is reel(t)
 

@@ -111,7 +111,8 @@ struct Constraint {
   Measure measure = {};       // "measure": what is held or driven
   TimeFunction target = {};   // "measure": its value over time, in the measure's unit
   bool symmetry = false;      // says that a structure is flat or symmetric: no support
-  bool of_stop = false;       // stands for a stop, cable or friction that holds, or a latch, by its name
+  bool of_stop = false;       // stands for a stop, cable or friction that holds, or a latch
+  int side = -1;              // of the stops (simulate/stops.hpp), for which it stands; -1: for none
 };
 
 // An end stop: limits that a measure may touch but not pass (simulate/stops.hpp).
