@@ -39,7 +39,8 @@ bool can_turn(const Structure& structure, const MatrixXd& about) {
   MatrixXd rows(0, 6);
   const double size = std::max(about.lpNorm<Eigen::Infinity>(), 1e-300);
   for (const Constraint& c : structure.constraints)
-    if ((c.kind == "fixed" || c.kind == "plane" || c.kind == "line") && c.nodes.size() == 1)
+    if ((c.kind == "fixed" || c.kind == "plane" || c.kind == "line") && c.nodes.size() == 1 &&
+        c.nodes[0] < about.cols())
       add_rows(c, about.col(c.nodes[0]) / size, rows);
   if (rows.rows() == 0) return true;
   const auto rank = [](const MatrixXd& A) {
@@ -52,7 +53,7 @@ bool can_turn(const Structure& structure, const MatrixXd& about) {
 
 TurnedFrame::TurnedFrame(const Structure& structure) {
   if (!structure.deployment.folds() || structure.sectors != 1.0) return;
-  MatrixXd about = about_centre(node_positions(structure));
+  MatrixXd about = about_centre(node_positions(structure).head(space_coordinates(structure)));
   if (!can_turn(structure, about)) return;
   start_ = std::move(about);
   for (const ReportedSurface& surface : structure.surfaces) also_ += ", and " + surface.name;
@@ -63,7 +64,7 @@ std::string TurnedFrame::at(const System& system, const State& state) {
   if (said_ || start_.size() == 0) return "";
   VectorXd q(system.coordinates());
   system.expand(state.z, q);
-  const Eigen::Matrix3d A = about_centre(q) * start_.transpose();
+  const Eigen::Matrix3d A = about_centre(q.head(start_.size())) * start_.transpose();
   for (Index i = 0; i < 3; ++i) {
     const Index j = (i + 1) % 3, k = (i + 2) % 3;
     said_ = said_ || std::abs(A(k, j) - A(j, k)) > little * std::abs(A(j, j) + A(k, k)) + rounding * A.norm();

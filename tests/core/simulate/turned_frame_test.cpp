@@ -91,6 +91,45 @@ TEST_CASE("a floating ring that its loads turn says that its fold angle is off, 
   }
 }
 
+// What a motor's rotor has turned by is no place in space. An open ring that its fold angle's motor drives
+// deploys evenly beside the origin, where the rotor's number would stand.
+TEST_CASE("a rotor that turns is no turn of the structure") {
+  const std::string arc = R"(
+[structure]
+kind = "hoop"
+units = 6
+model = "joints"
+closed = false
+fold_angle = 80
+hinge_force = 0
+chord_rod_length = 0.15
+post_length = 0.06
+section_area = 1e-5
+[[forces]]
+kind = "motor"
+fold_angle = true
+stall_torque = 0.02
+no_load_speed = 20000
+gear_ratio = 2000
+inertia = 1e-8
+[solver]
+end_time = 0.5
+step = 0.01
+)";
+  const Simulation run = testing::run_scene(arc);
+  // It turns by nothing: what A would have of a turn is rounding.
+  const Index n = space_coordinates(run.trajectory.structure());
+  const auto about_centre = [n](const VectorXd& q) {
+    Eigen::Matrix3Xd x = Eigen::Map<const Eigen::Matrix3Xd>(q.data(), 3, n / 3);
+    x.colwise() -= Vec3(x.rowwise().mean());
+    return x;
+  };
+  const Eigen::Matrix3d A =
+      about_centre(testing::end_positions(run)) * about_centre(run.trajectory.node_positions(0)).transpose();
+  REQUIRE((A - A.transpose()).norm() < 1e-9 * A.norm());
+  CHECK(told(run.warnings, "turns in space") == 0);
+}
+
 TEST_CASE("an arc whose units unfold unlike each other is deployed on the mean alone, and no latch closes") {
   const std::vector<std::string> uneven = {"structure.perturbed_force=100", "solver.end_time=1.6"};
   const Simulation stopped = run_library("hoop_arc", uneven);
