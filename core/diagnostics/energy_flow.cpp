@@ -70,7 +70,7 @@ double EnergyMeter::damping_bound(const State& state) {
   system_.expand(state.z, q_);
   system_.expand_rate(state.w, v_);
   system_.force_derivatives(state.t, q_, v_, derivatives_);
-  return rate_bound(derivatives_.by_w.sum(), system_.mass());
+  return rate_bound(derivatives_.by_w.sum(), system_.moving_mass());
 }
 
 double EnergyMeter::energy(const State& state) {
@@ -198,12 +198,13 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   };
   const auto square = [](double x) { return x * x; };
   const auto power = [&](const VectorXd& w) { return VectorXd(-w.cwiseProduct(by_w * w)); };
-  const VectorXd bounds = rate_bounds(by_w, system_.mass()), mean = (b.z - a.z) / h;
+  const VectorXd m = system_.moving_mass(), bounds = rate_bounds(by_w, m), mean = (b.z - a.z) / h;
   const VectorXd of_a = power(a.w), of_b = power(b.w), of_mean = power(mean),
                  of_off = power(mean - 0.5 * (a.w + b.w));
   constexpr double of_energy = 1e-9;
   const double rounding = of_energy * std::max(system_.kinetic_energy(a.w), system_.kinetic_energy(b.w));
   for (Index i = 0; i < mean.size(); ++i) {
+    if (std::isinf(m[i])) continue;
     PartRates& part = of(parts_, i);
     Rates& damped = of(damped_, i).damped;
     part.stiff |= h * bounds[i] > stiff_at;

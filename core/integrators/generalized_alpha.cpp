@@ -38,6 +38,7 @@ class GeneralizedAlpha final : public Integrator {
         G_(system.jacobian_pattern()),
         saddle_(system.mass(), G_),
         least_mass_(system.mass().diagonal().minCoeff()),
+        least_moving_(system.moving_mass().minCoeff()),
         rows_(system) {
     lead_ = steady_.alpha_m - steady_.alpha_f;
     for (VectorXd* v :
@@ -85,8 +86,8 @@ class GeneralizedAlpha final : public Integrator {
     return {alpha_f, alpha_m, 0.25 * (gamma + 0.5) * (gamma + 0.5), gamma};
   }
   bool resolves(double h) const {
-    return h * h * stiffness_ <= resolved_stiffness * least_mass_ &&
-           h * damping_ <= resolved_damping * least_mass_;
+    return h * h * stiffness_ <= resolved_stiffness * least_moving_ &&
+           h * damping_ <= resolved_damping * least_moving_;
   }
   bool begin(const State& state, double h, StepReport& report);
   void look_at_forces(const State& state);
@@ -123,9 +124,9 @@ class GeneralizedAlpha final : public Integrator {
   double lead_ = 0;  // alpha_m - alpha_f: a_0 of steady steps is that of the time t + (alpha_m - alpha_f) h
   VectorXd change_;  // of a_0 in the last step
   bool stiff_ = false;  // forces are too stiff for corrections that know nothing of them
-  double least_mass_;
+  double least_mass_, least_moving_;
   SparseRows by_z_, by_w_;              // derivatives of the forces at the first of these steps
-  double stiffness_ = 0, damping_ = 0;  // their largest entries
+  double stiffness_ = 0, damping_ = 0;  // their largest entries, of what moves
   RowNoise rows_;
 };
 
@@ -152,8 +153,9 @@ void GeneralizedAlpha::look_at_forces(const State& state) {
   system_.expand(state.z, q_);
   system_.expand_rate(state.w, v_);
   system_.force_derivatives(state.t, q_, v_, by_z_, by_w_);
-  stiffness_ = by_z_.nonZeros() ? largest_magnitude(by_z_.valuePtr(), by_z_.nonZeros()) : 0.0;
-  damping_ = by_w_.nonZeros() ? largest_magnitude(by_w_.valuePtr(), by_w_.nonZeros()) : 0.0;
+  const VectorXd m = system_.moving_mass();
+  stiffness_ = largest_of_moving(by_z_, m);
+  damping_ = largest_of_moving(by_w_, m);
 }
 
 // Unchanged acceleration and multipliers.

@@ -38,8 +38,7 @@ void RowNoise::add_products(const SparseRows& A, const ConstVec& x, double scale
     for (SparseRows::InnerIterator it(A, i); it; ++it) size_[i] += std::abs(scale * it.value() * x[it.col()]);
 }
 
-VectorXd rate_bounds(const SparseRows& A, const SparseRows& M) {
-  const VectorXd m = M.diagonal();
+VectorXd rate_bounds(const SparseRows& A, const VectorXd& m) {
   VectorXd sums = VectorXd::Zero(A.rows());
   for (int i = 0; i < A.outerSize(); ++i)
     for (SparseRows::InnerIterator it(A, i); it; ++it)
@@ -47,8 +46,16 @@ VectorXd rate_bounds(const SparseRows& A, const SparseRows& M) {
   return sums;
 }
 
-double rate_bound(const SparseRows& A, const SparseRows& M) {
-  const VectorXd sums = rate_bounds(A, M);
+double largest_of_moving(const SparseRows& A, const VectorXd& m) {
+  double most = 0;
+  for (int i = 0; i < A.outerSize(); ++i)
+    for (SparseRows::InnerIterator it(A, i); it; ++it)
+      if (std::isfinite(m[i] * m[it.col()])) most = std::max(most, std::abs(it.value()));
+  return most;
+}
+
+double rate_bound(const SparseRows& A, const VectorXd& m) {
+  const VectorXd sums = rate_bounds(A, m);
   double most = 0;
   for (const double sum : sums) most = std::max(most, sum);
   return most;

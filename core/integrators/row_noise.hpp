@@ -45,9 +45,11 @@ class RowNoise {
   VectorXd far_;                     // of each row: its reach in its own length, at least 1
 };
 
-// Of each row the sum of |A_ij| / sqrt(M_ii M_jj): A = dF/dz' gives a bound of c / m [1/s], dF/dz of
-// k / m [1/s^2].
-VectorXd rate_bounds(const SparseRows& A, const SparseRows& M);
-double rate_bound(const SparseRows& A, const SparseRows& M);  // the largest
+// Of each row the sum of |A_ij| / sqrt(m_i m_j), with masses m (System::moving_mass): A = dF/dz' gives a
+// bound of c / m [1/s], dF/dz of k / m [1/s^2].
+VectorXd rate_bounds(const SparseRows& A, const VectorXd& m);
+double rate_bound(const SparseRows& A, const VectorXd& m);  // the largest
+// The largest |A_ij| of finite masses.
+double largest_of_moving(const SparseRows& A, const VectorXd& m);
 
 }  // namespace unfurl

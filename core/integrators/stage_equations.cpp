@@ -78,15 +78,13 @@ void StageEquations::look_at_forces(const VectorXd& q) {
   by_z_ = derivatives_.by_z.sum();
   by_w_ = derivatives_.by_w.sum();
   for (SparseRows* A : {&by_z_, &by_w_}) A->prune(0.0);  // of what is slack
-  omega_ = std::sqrt(rate_bound(by_z_, system.mass()));
-  rate_ = rate_bound(by_w_, system.mass());
+  const VectorXd m = system.moving_mass();
+  omega_ = std::sqrt(rate_bound(by_z_, m));
+  rate_ = rate_bound(by_w_, m);
   // Forces that are unknowns are not known by rounded coordinates.
   if (rods.as_unknowns) system.force_derivatives(t, q, v_tau_, rods.tension.col(0), by_z_, by_w_);
-  const auto largest_entry = [](const SparseRows& A) {
-    return A.nonZeros() > 0 ? largest_magnitude(A.valuePtr(), A.nonZeros()) : 0.0;
-  };
-  stiffness_ = largest_entry(by_z_);
-  damping_ = largest_entry(by_w_);
+  stiffness_ = largest_of_moving(by_z_, m);
+  damping_ = largest_of_moving(by_w_, m);
 }
 
 double StageEquations::h_omega() const {

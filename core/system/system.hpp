@@ -106,7 +106,10 @@ class System {
   // sum_k lambda_k Hess Phi_k with respect to z (for a full Newton matrix; allocates).
   SparseRows curvature(const ConstVec& q, const ConstVec& lambda) const;
 
-  double kinetic_energy(const ConstVec& w) const;    // [J]
+  double kinetic_energy(const ConstVec& w) const;  // [J]
+  // Of solved coordinates, M_ii; infinite of integrals of controllers, whose numbers no rate is to be told
+  // by.
+  VectorXd moving_mass() const;
   double potential_energy(const ConstVec& q) const;  // gravity and springs [J]
   // The same at a state in this pose: rods whose forces its coordinates do not tell have stored C N^2 / 2.
   double potential_energy(const State& state, const ConstVec& q) const;

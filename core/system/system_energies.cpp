@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Energies and powers of a System.
 #include <algorithm>
+#include <limits>
 
 #include "core/system/system_data.hpp"
 
@@ -15,10 +16,18 @@ void System::Data::find_integrators(const Structure& structure) {
 }
 
 double System::kinetic_energy(const ConstVec& w) const {
-  double twice = w.dot(data_->mass * w);
-  for (const Index k : data_->integrators) twice -= data_->mass.coeff(k, k) * w[k] * w[k];
-  return 0.5 * twice;
+  if (data_->integrators.empty()) return 0.5 * w.dot(data_->mass * w);
+  VectorXd moving = w;  // beside what moves slowly a sum may change by anything
+  moving(data_->integrators).setZero();
+  return 0.5 * moving.dot(data_->mass * moving);
 }
+
+VectorXd System::moving_mass() const {
+  VectorXd m = data_->mass.diagonal();
+  m(data_->integrators).setConstant(std::numeric_limits<double>::infinity());
+  return m;
+}
+
 double System::potential_energy(const ConstVec& q) const {
   double sum = -data_->gravity_force.dot(q);
   for (const auto& block : data_->forces) sum += block->potential(moment(since_), q.data());

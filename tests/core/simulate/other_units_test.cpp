@@ -97,6 +97,45 @@ TEST_CASE("friction of a hinge lets go at its limit in structures of a nanometre
     check_other_units(scene, units, 0, {{"kinetic", "N m"}, {"static", "N m"}});
 }
 
+// What a controller sums up is no length, and nothing moves with it: however slow and small the mechanism is,
+// its energy and its steps are those of what moves. Among lengths the sum weighs as much as its unit says, in
+// what counts as converged: to 1e-9 of the largest.
+TEST_CASE("a motor with an integral moves slow and small mechanisms alike") {
+  const std::string arm = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0.1], mass = 0.2},
+  {name = "C", position = [1.4, 0.9, 0], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 1}, {nodes = ["B", "C"], mass = 0.5}]
+[[forces]]
+kind = "motor"
+name = "m"
+nodes = ["A", "B", "C"]
+stall_torque = 1
+no_load_speed = 300
+gear_ratio = 3
+control = "position"
+proportional = 2
+derivative = 0.1
+integral = 1
+motion = "smooth"
+to = 100
+duration = 1.5
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+step = 0.005
+end_time = 1.3
+)";
+  for (const char* change : {"solver.method=\"dvm\"", "solver.adaptive=true",
+                             "solver.method=\"generalized_alpha\"", "solver.method=\"rk4_projected\""}) {
+    INFO(change);
+    const Scene scene = read_scene_text(arm, "s.toml", {change});
+    for (const OtherUnits& units : {OtherUnits{-10, 0, 20}, OtherUnits{-20, 0, 20}, OtherUnits{20, 0, -10}})
+      check_other_units(scene, units, 1e-9, {{"integral", "N m/rad/s"}});
+  }
+}
+
 TEST_CASE("the nearest pair of rods is that of other units, to the last bit") {
   const Scene scene = read_scene_file(find_scene("four_bar"), {});
   const auto nearest = [&](const OtherUnits& units) {
