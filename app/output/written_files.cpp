@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <sstream>
@@ -97,6 +98,13 @@ WrittenFiles::WrittenFiles(fs::path directory, std::string owner, bool was_empty
 
 WrittenFiles::~WrittenFiles() {
   watch_files(before_);
+  for (const std::string& name : grown_) {
+    const std::string sum = checksum_in(AT_FDCWD, (directory_ / name).string());
+    try {
+      if (!sum.empty() && grows_now(name)) append(name, {sum});
+    } catch (const FileError&) {  // it is listed as one that grows
+    }
+  }
 }
 
 WrittenFiles::Lines WrittenFiles::lines_of(const std::string& list, std::string& title) {
@@ -106,7 +114,7 @@ WrittenFiles::Lines WrittenFiles::lines_of(const std::string& list, std::string&
   for (std::string line; std::getline(text, line);) {
     const std::size_t one = line.find(' '), two = line.find(' ', one + 1);
     if (one == std::string::npos || two == std::string::npos) continue;
-    lines[unescaped(std::string_view(line).substr(two + 1))].insert(
+    lines[unescaped(std::string_view(line).substr(two + 1))].push_back(
         {line.substr(0, one), line.substr(one + 1, two - one - 1)});
   }
   return lines;
@@ -118,26 +126,48 @@ void WrittenFiles::read() {
   lines_ = lines_of(file.text, title_);
 }
 
+// The last line of a name says what its bytes are.
+std::vector<WrittenFiles::Verdict> WrittenFiles::judge(const fs::path& directory, const Lines& lines) {
+  std::vector<Verdict> verdicts;
+  for (const auto& [name, known] : lines) {
+    const Descriptor parent = parent_in(directory, name);
+    const std::string now = parent ? checksum_in(parent.get(), fs::path(name).filename().string()) : "";
+    if (now.empty() && name.starts_with(of_workers)) continue;  // which may be removed
+    const Line& last = known.back();
+    const auto fits =
+        std::find_if(known.rbegin(), known.rend(), [&now](const Line& line) { return line.checksum == now; });
+    Verdict verdict{name, Verdict::changed, last.owner};
+    if (now.empty()) {
+      verdict.kind = Verdict::missing;
+    } else if (fits != known.rend()) {
+      verdict.kind = last.checksum == now || last.checksum == any_content ? Verdict::same : Verdict::earlier;
+      verdict.owner = fits->owner;
+    } else if (last.checksum == any_content) {
+      verdict.kind = Verdict::growing;
+    }
+    verdicts.push_back(std::move(verdict));
+  }
+  return verdicts;
+}
+
 std::vector<WrittenFiles::Verdict> WrittenFiles::verify(const fs::path& directory) {
   const TextFile file = read_text_file((directory / list_name).string());
   std::string title;
   const Lines lines = lines_of(file.text, title);
   if (!file.error.empty() || (!title.starts_with(made) && !title.starts_with(written_into)))
     throw FileError(directory, "has no list of what unfurl wrote into it (.unfurl)");
-  std::vector<Verdict> verdicts;
-  for (const auto& [name, known] : lines) {
-    const Descriptor parent = parent_in(directory, name);
-    const std::string now = parent ? checksum_in(parent.get(), fs::path(name).filename().string()) : "";
-    if (now.empty() && name.starts_with(of_workers)) continue;  // which may be removed
-    Verdict verdict{name, now.empty() ? Verdict::missing : Verdict::changed, known.begin()->owner};
-    for (const Line& line : known) {
-      if (now.empty()) break;
-      if (line.checksum == now) verdict.kind = Verdict::same, verdict.owner = line.owner;
-      if (line.checksum == any_content && verdict.kind == Verdict::changed) verdict.kind = Verdict::growing;
-    }
-    verdicts.push_back(std::move(verdict));
-  }
-  return verdicts;
+  return judge(directory, lines);
+}
+
+std::vector<std::string> WrittenFiles::changed(const fs::path& directory,
+                                               const std::function<bool(const std::string&)>& asked) {
+  std::string title;
+  Lines lines = lines_of(read_text_file((directory / list_name).string()).text, title);
+  std::erase_if(lines, [&](const auto& entry) { return !asked(entry.first); });
+  std::vector<std::string> names;
+  for (const Verdict& verdict : judge(directory, lines))
+    if (verdict.kind == Verdict::changed) names.push_back(verdict.name);
+  return names;
 }
 
 // False where there is a list already; others may begin one at the same moment.
@@ -169,21 +199,35 @@ void WrittenFiles::write_anew() {
 }
 
 // One write at the file's end: whole beside those of other programs.
-void WrittenFiles::append(const Line& line, const std::string& name) {
-  if (!lines_[name].insert(line).second) return;
+void WrittenFiles::append(const std::string& name, const std::vector<std::string>& checksums) {
+  std::string text;
+  std::vector<Line>& lines = lines_[name];
+  for (const std::string& checksum : checksums) {
+    const Line line{checksum, owner_};
+    if (!lines.empty() && lines.back() == line) continue;
+    std::erase(lines, line);
+    lines.push_back(line);
+    text += checksum + " " + owner_ + " " + escaped(name) + "\n";
+  }
+  if (text.empty()) return;
   const Descriptor file(
       ::open((directory_ / list_name).c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC));
-  const std::string text = line.checksum + " " + line.owner + " " + escaped(name) + "\n";
   if (!file || ::write(file.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()))
     throw FileError(directory_ / list_name, errno);
+  // After a power cut what grew would be one that was changed.
+  if (checksums.back() == any_content) ::fsync(file.get());
+}
+
+bool WrittenFiles::grows_now(const std::string& name) const {
+  const auto found = lines_.find(name);
+  return found != lines_.end() && found->second.back().checksum == any_content;
 }
 
 bool WrittenFiles::known(const std::string& name, const std::string& checksum) const {
   const auto found = lines_.find(name);
   if (found == lines_.end()) return false;
-  for (const Line& line : found->second)
-    if (line.checksum == any_content || line.checksum == checksum) return true;
-  return false;
+  return grows_now(name) || std::any_of(found->second.begin(), found->second.end(),
+                                        [&](const Line& line) { return line.checksum == checksum; });
 }
 
 // Empty for what lies elsewhere.
@@ -198,6 +242,7 @@ void WrittenFiles::before_file(const fs::path& target, const std::string& checks
   if (name.empty()) return;
   const std::lock_guard lock(mutex_);
   struct stat status {};
+  std::vector<std::string> sums;
   if (::lstat(target.c_str(), &status) == 0 && !S_ISDIR(status.st_mode)) {
     const std::string old = checksum_in(AT_FDCWD, target.string());
     const bool same = !old.empty() && old == checksum;
@@ -205,8 +250,14 @@ void WrittenFiles::before_file(const fs::path& target, const std::string& checks
       read();  // another program may have written it since
       if (old.empty() || !known(name, old)) put_aside(target);
     }
+    if (grows_now(name) && !old.empty()) sums.push_back(old);  // it is that until the new one has its place
   }
-  append({checksum, owner_}, name);
+  sums.push_back(checksum);
+  if (will_grow_.erase(name) > 0) {
+    sums.push_back(any_content);
+    grown_.insert(name);
+  }
+  append(name, sums);
 }
 
 void WrittenFiles::keep_aside(const std::string& name) {
@@ -233,8 +284,13 @@ void WrittenFiles::put_aside(const fs::path& target) {
 
 void WrittenFiles::grows(const std::string& name) {
   const std::lock_guard lock(mutex_);
-  append({any_content, owner_}, name);
+  append(name, {any_content});
   if (before_) before_->before_file(directory_ / name, any_content);
+}
+
+void WrittenFiles::will_grow(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  will_grow_.insert(name);
 }
 
 bool WrittenFiles::ours(const std::string& name) const {
@@ -244,7 +300,9 @@ bool WrittenFiles::ours(const std::string& name) const {
   const Descriptor folder = parent_in(directory_, name);
   const std::string sum = folder ? checksum_in(folder.get(), fs::path(name).filename().string()) : "";
   if (sum.empty()) return false;
-  return found->second.contains({any_content, owner_}) || found->second.contains({sum, owner_});
+  const std::vector<Line>& lines = found->second;
+  return lines.back() == Line{any_content, owner_} ||
+         std::find(lines.begin(), lines.end(), Line{sum, owner_}) != lines.end();
 }
 
 std::string WrittenFiles::other_owner(const std::string& name) const {

@@ -22,7 +22,8 @@ namespace unfurl {
 //   ---------------- sweep sweep.csv         of a file that grows: whatever its bytes are
 //
 // A line is appended before the file gets its name, so that a kill leaves no file without one; a name may
-// have several lines, and a file is ours where one of them fits it. While the object lives every file that
+// have several lines: the last one says what its bytes are, and a file is ours where any of them fits it. A
+// file grows only while its line for that is the last. While the object lives every file that
 // the program writes into DIR is entered under `owner`. A file in the way that is not ours, or was changed
 // since, is kept beside ours as NAME.kept-1 (-2, ...).
 class WrittenFiles final : public FileWatcher {
@@ -34,8 +35,10 @@ class WrittenFiles final : public FileWatcher {
   WrittenFiles& operator=(const WrittenFiles&) = delete;
 
   void before_file(const std::filesystem::path& target, const std::string& checksum) override;
-  // The file grows after it was written.
+  // The file is there and grows.
   void grows(const std::string& name);
+  // It does once it is written the next time, until it is written as a whole or this object ends.
+  void will_grow(const std::string& name);
 
   // Has DIR/name a line of this owner, and is it a file with the checksum of one?
   bool ours(const std::string& name) const;
@@ -59,12 +62,15 @@ class WrittenFiles final : public FileWatcher {
 
   // What became of the files that DIR's list names. Throws FileError where there is no list.
   struct Verdict {
-    enum Kind { same, changed, missing, growing };
+    enum Kind { same, changed, missing, growing, earlier };  // earlier: not as its last line says
     std::string name;
     Kind kind;
     std::string owner;  // of the line that fits its bytes, or of one
   };
   static std::vector<Verdict> verify(const std::filesystem::path& directory);
+  // Those of the listed files that `asked` takes whose bytes are none that unfurl wrote; none without a list.
+  static std::vector<std::string> changed(const std::filesystem::path& directory,
+                                          const std::function<bool(const std::string&)>& asked);
 
   // Is there a list that was begun in an empty directory? False also where it cannot be read.
   static bool begun_here(const std::filesystem::path& directory);
@@ -73,15 +79,17 @@ class WrittenFiles final : public FileWatcher {
  private:
   struct Line {
     std::string checksum, owner;
-    auto operator<=>(const Line&) const = default;
+    bool operator==(const Line&) const = default;
   };
 
-  using Lines = std::map<std::string, std::set<Line>>;  // by name
+  using Lines = std::map<std::string, std::vector<Line>>;  // by name, in the order of the list
   static Lines lines_of(const std::string& list, std::string& title);
   void read();
-  void append(const Line& line, const std::string& name);
+  static std::vector<Verdict> judge(const std::filesystem::path& directory, const Lines& lines);
+  void append(const std::string& name, const std::vector<std::string>& checksums);
   bool begin(bool was_empty);
   void write_anew();
+  bool grows_now(const std::string& name) const;
   bool known(const std::string& name, const std::string& checksum) const;
   std::string name_of(const std::filesystem::path& target) const;
   void put_aside(const std::filesystem::path& target);
@@ -90,6 +98,7 @@ class WrittenFiles final : public FileWatcher {
   std::string owner_, title_;
   mutable std::mutex mutex_;
   Lines lines_;
+  std::set<std::string> will_grow_, grown_;
   std::vector<std::string> kept_;
   FileWatcher* before_ = nullptr;
 };

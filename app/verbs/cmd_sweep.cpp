@@ -187,6 +187,7 @@ std::vector<fs::path> journals_in(const std::vector<std::string>& directories, c
     require_identity(directory, identity, "merge what one command computed, with its --set and --vary");
     const auto here = journals_like("sweep.csv", directory);
     if (here.empty()) throw FileError(directory, "holds no points of a sweep (sweep*.csv)");
+    require_as_written(directory, here, out_of_the_way);
     found.insert(found.end(), here.begin(), here.end());
   }
   return found;

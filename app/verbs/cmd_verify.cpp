@@ -78,11 +78,14 @@ int cmd_verify(const Arguments& arguments) {
   }
   std::size_t bad = 0, open = 0;
   for (const Verdict& verdict : verdicts) {
-    if (verdict.kind == Verdict::changed || verdict.kind == Verdict::missing) {
-      std::cout << (verdict.kind == Verdict::changed ? "changed: " : "missing: ") << verdict.name << "\n";
-      ++bad;
-    }
     open += verdict.kind == Verdict::growing;
+    if (verdict.kind == Verdict::same || verdict.kind == Verdict::growing) continue;
+    ++bad;
+    if (verdict.kind == Verdict::earlier)
+      std::cout << "earlier: " << verdict.name
+                << " is as an earlier command wrote it, not as the last one did\n";
+    else
+      std::cout << (verdict.kind == Verdict::changed ? "changed: " : "missing: ") << verdict.name << "\n";
   }
   const std::string count = std::to_string(verdicts.size()) + (verdicts.size() == 1 ? " file" : " files");
   if (bad > 0) {

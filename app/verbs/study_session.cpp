@@ -97,6 +97,18 @@ void require_identity(const fs::path& directory, const std::string& identity, co
   throw FileError(directory, what + cure);
 }
 
+void require_as_written(const fs::path& directory, const std::vector<fs::path>& tables,
+                        const std::string& cure) {
+  const auto changed = WrittenFiles::changed(directory, [&](const std::string& name) {
+    return std::ranges::find(tables, directory / name) != tables.end();
+  });
+  if (changed.empty()) return;
+  throw FileError(directory / changed.front(),
+                  "was changed since unfurl wrote it, and its results are not taken; put back what was "
+                  "written, or " +
+                      cure);
+}
+
 StudySession::StudySession(const Arguments& arguments, std::string task, const std::string& identity,
                            std::string journal)
     : arguments_(arguments),
@@ -128,6 +140,11 @@ void StudySession::begin() {
   const bool begun = arguments_.join ? fs::exists(directory() / "scene.toml", error)
                                      : !journals_like(journal_, directory()).empty();
   if (begun) require_identity(directory(), identity_, "use another directory, or --force to begin anew");
+  if (!arguments_.join)
+    require_as_written(directory(), {journal()},
+                       arguments_.study.merge.empty()
+                           ? "use --force to begin anew, which keeps it as " + journal_ + ".kept-1"
+                           : out_of_the_way);
   if (!identity_.empty()) write_file_atomically(directory() / "scene.toml", identity_);
   if (shard()) output_.lock().share();
 }
@@ -156,7 +173,7 @@ std::function<void()> StudySession::room_for_first() {
 
 void StudySession::grows(const fs::path& file) {
   grows_ = file;
-  if (!in_the_way_) output_.written().grows(file.lexically_relative(directory()).generic_string());
+  if (!in_the_way_) output_.written().will_grow(file.lexically_relative(directory()).generic_string());
 }
 
 // Another study's results go, those of this one too; but a shard leaves alone what other shards of the same

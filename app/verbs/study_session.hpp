@@ -41,6 +41,13 @@ std::string idle_key_text(const Scene& scene, const std::string& key);
 void require_identity(const std::filesystem::path& directory, const std::string& identity,
                       const std::string& cure);
 
+// Throws FileError, with what can be done, where one of these tables in the directory was finished and
+// changed since.
+void require_as_written(const std::filesystem::path& directory,
+                        const std::vector<std::filesystem::path>& tables, const std::string& cure);
+// What can be done where --force is no cure.
+constexpr const char* out_of_the_way = "move it away: what it stood for is made anew";
+
 class StudySession {
  public:
   // `identity` is written to DIR/scene.toml: what the results belong to. Results of another identity are

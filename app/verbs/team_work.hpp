@@ -28,6 +28,7 @@ inline std::unique_ptr<Team> join_team(const Arguments& arguments, const std::fi
 // The same over the directory of a study, in which the worker's journal grows, or that of the only one.
 inline std::unique_ptr<Team> join_team(const Arguments& arguments, StudySession& session) {
   auto team = join_team(arguments, session.directory());
+  if (team) require_as_written(session.directory(), team->journals_of_others(), out_of_the_way);
   session.grows(team ? team->journal() : session.journal());
   return team;
 }

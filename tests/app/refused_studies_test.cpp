@@ -10,7 +10,8 @@ using namespace unfurl;
 
 namespace refused_studies_test {
 
-TEST_CASE("damaged rows of an earlier sweep are told of and computed anew") {
+// As a kill leaves it: the list says that it grows.
+TEST_CASE("damaged rows of an unfinished sweep are told of and computed anew") {
   const ScratchDirectory dir;
   const std::vector<std::string> sweep = {"sweep",     "pendulum", "--vary", "structure.angle=10,20,30",
                                           "--measure", "energy",   "--set",  "solver.end_time=0.3",
@@ -22,6 +23,7 @@ TEST_CASE("damaged rows of an earlier sweep are told of and computed anew") {
   for (const char* row : {"20,banana,0.12", "20,completed,nan", "20,completed,inf", "20,completed,-1"}) {
     INFO(row);
     std::ofstream(dir / "out/sweep.csv") << right.substr(0, begin) << row << right.substr(end);
+    std::ofstream(dir / "out/.unfurl", std::ios::app) << "---------------- sweep sweep.csv\n";
     const ProgramResult again = run_program(sweep);
     CHECK(again.code == 0);
     CHECK(again.err.find("sweep.csv: line 3 is no finished result and was not taken") != std::string::npos);

@@ -293,6 +293,7 @@ TEST_CASE("journals that hold no results are refused or measured again") {
   std::string damaged = points;
   damaged.replace(damaged.rfind(',') + 1, 3, "abc");
   std::ofstream(dir / "out/sweep.csv") << damaged;
+  std::ofstream(dir / "out/.unfurl", std::ios::app) << "---------------- sweep sweep.csv\n";  // unfinished
   CHECK(run_program(sweep).code == 0);
   CHECK(file_text(dir / "out/sweep.csv") == points);
   for (const char* verb : {"study", "stress"}) {
