@@ -2,6 +2,7 @@
 #include "render/scene/pose_times.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <queue>
 #include <utility>
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double moment_share = 1e-3;  // of the structure's size
 constexpr int bold_halvings = 3;       // of a step that may turn twice
+constexpr double rest_share = 1e-3;    // of what is allowed: what goes by less in a step is at rest
 
 double diagonal(const VectorXd& pose) {
   if (pose.size() == 0) return 0;
@@ -22,9 +24,10 @@ double diagonal(const VectorXd& pose) {
 }
 
 struct Stretch {
-  double off;        // what its motion leaves its straight line by, about [m]
-  std::size_t a, b;  // moments
-  int halved = 0;    // times, from a whole step
+  double off;            // what its motion leaves its straight line by, about [m]
+  std::size_t a, b;      // moments
+  int halved = 0;        // times, from a whole step
+  bool guessed = false;  // `off`, of a step whose ends do not tell of it
   bool operator<(const Stretch& other) const { return off < other.off; }
 };
 
@@ -37,9 +40,18 @@ class MomentSearch {
     if (!(size > 0)) size = (found_.poses.back() - found_.poses.front()).norm();  // of one point: of its way
     allowed_ = moment_share * size;
     VectorXd before = run.velocities(0);
+    bool rests = false, swings = false;
     for (std::size_t i = 0; i + 1 < run.size(); ++i) {
       VectorXd behind = run.velocities(i + 1);
-      keep({off_cubic(i, before, behind), i, i + 1});
+      const ByEnds ends = told_by_ends(i, before, behind);
+      // A swing from rest to rest at one place: of several such steps the first one tells.
+      const bool rested = std::exchange(rests, ends.way <= rest_share * allowed_);
+      if (!rests || !rested)
+        swings = rests && off_line(run.positions_at(moment_in({0, i, i + 1, 0, true})), i, i + 1) > allowed_;
+      if (ends.off > allowed_)
+        keep({ends.off, i, i + 1});
+      else
+        keep({swings ? size : ends.untold, i, i + 1, 0, true});
       before = std::move(behind);
     }
   }
@@ -51,17 +63,19 @@ class MomentSearch {
     for (; left > 0 && !stretches_.empty(); --left) {
       const Stretch s = stretches_.top();
       stretches_.pop();
-      const double middle = 0.5 * (found_.times[s.a] + found_.times[s.b]);
-      if (!(middle > found_.times[s.a] && middle < found_.times[s.b])) continue;
-      add(middle, run_.positions_at(middle));
+      const double at = moment_in(s);
+      if (!(at > found_.times[s.a] && at < found_.times[s.b])) continue;
+      add(at, run_.positions_at(at));
       const std::size_t m = found_.times.size() - 1;
       const double off = off_line(found_.poses[m], s.a, s.b);
+      if (s.guessed && off <= allowed_) continue;
       // What does not straighten in parts is no curve: at singular poses steps lead to either side.
       if (s.halved >= bold_halvings && off > 2 * s.off) continue;
       // A half leaves its line by a quarter of that. What turns twice is at its place in the middle.
-      const double next = 0.25 * std::max(s.off, off);
-      keep({next, s.a, m, s.halved + 1});
-      keep({next, m, s.b, s.halved + 1});
+      const double next = s.guessed ? 0.4 * off : 0.25 * std::max(s.off, off);
+      const int halved = s.guessed ? 0 : s.halved + 1;
+      keep({next, s.a, m, halved});
+      keep({next, m, s.b, halved});
     }
     return in_order();
   }
@@ -85,22 +99,37 @@ class MomentSearch {
     return worst;
   }
 
-  // Of Hermite's cubic through both states: what tells curved steps from straight ones without a step of the
-  // method.
-  double off_cubic(std::size_t i, const VectorXd& before, const VectorXd& behind) const {
+  // The middle; of what is guessed beside it, where what goes there and back, or round, is elsewhere.
+  double moment_in(const Stretch& s) const {
+    return std::lerp(found_.times[s.a], found_.times[s.b], s.guessed ? 0.4 : 0.5);
+  }
+
+  struct ByEnds {
+    double off = 0;     // what Hermite's cubic through both states leaves their line by
+    double untold = 0;  // what a node goes besides, where that is most of its way: as from rest to rest
+    double way = 0;     // of the node that goes farthest
+  };
+
+  // What tells curved steps from straight ones without a step of the method.
+  ByEnds told_by_ends(std::size_t i, const VectorXd& before, const VectorXd& behind) const {
     const double h = found_.times[i + 1] - found_.times[i];
     const VectorXd &from = found_.poses[i], &to = found_.poses[i + 1];
     const VectorXd first = h * before - (to - from), last = (to - from) - h * behind;
+    ByEnds out;
     double most = 0;  // u (1 - u)^2 has no more than 4/27
-    for (Index k = 0; k < from.size(); k += 3)
-      most = std::max(most, first.segment<3>(k).norm() + last.segment<3>(k).norm());
-    if (!(4.0 / 27 * most > allowed_)) return 0;
-    double worst = 0;
+    for (Index k = 0; k < from.size(); k += 3) {
+      const Vec3 a = first.segment<3>(k), b = last.segment<3>(k);
+      const double line = (to - from).segment<3>(k).norm(), untold = 0.5 * (a - b).norm();
+      most = std::max(most, a.norm() + b.norm());
+      if (untold > 0.5 * line) out.untold = std::max(out.untold, untold);
+      out.way = std::max({out.way, line, h * before.segment<3>(k).norm(), h * behind.segment<3>(k).norm()});
+    }
+    if (!(4.0 / 27 * most > allowed_)) return out;
     for (const double u : {0.25, 0.5, 0.75}) {
       const double v = 1 - u;
-      worst = std::max(worst, off_line(v * from + u * to + u * v * (v * first + u * last), i, i + 1));
+      out.off = std::max(out.off, off_line(v * from + u * to + u * v * (v * first + u * last), i, i + 1));
     }
-    return worst;
+    return out;
   }
 
   PosedMoments in_order() {

@@ -9,9 +9,13 @@
 #include <vector>
 
 #include "core/diagnostics/clearance.hpp"
+#include "core/path/path_run.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
 #include "render/scene/frame_builder.hpp"
 #include "render/scene/pose_times.hpp"
 #include "render/scene/view.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -140,6 +144,30 @@ end_time = 3
   if (step == "0.001") CHECK(moments.times.size() == run.trajectory.size());
 }
 
+// At its turning points a pendulum rests: half a swing is an arc between two states without velocities, which
+// look like a line, a whole one a place.
+TEST_CASE("what swings from rest to rest within a step is seen") {
+  const std::string bob = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true},
+         {name = "B", position = [0.8660254037844386, 0, -0.5], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 0}]
+constraints = [{kind = "plane", nodes = ["B"], normal = [0, 1, 0]}]
+[gravity]
+acceleration = [0, 0, -9.81]
+)";
+  const double period = 4 / std::sqrt(9.81) * std::comp_ellint_1(0.5);  // of 60 degrees to either side
+  const auto [swings, steps] = GENERATE(std::pair{2, 4}, std::pair{4, 4}, std::pair{4, 8});
+  CAPTURE(swings, steps);
+  const Scene scene = read_scene_text(bob, "s.toml",
+                                      {"solver.end_time=" + testing::number(swings * period),
+                                       "solver.step=" + testing::number(swings * period / steps)});
+  const Simulation run = simulate_on_path(build_model(scene), scene.solver);
+  REQUIRE(run.trajectory.size() == static_cast<std::size_t>(steps) + 1);
+  CHECK(left_out(run.trajectory, posed_moments(run.trajectory)) < 1.6e-3);
+}
+
 TEST_CASE("moments between states are no more than a picture can wait for and none where all goes straight") {
   const Simulation spinning = testing::run_scene(turning, {"solver.step=0.25", "solver.end_time=500"});
   const std::size_t states = spinning.trajectory.size();
@@ -158,6 +186,9 @@ step = 0.5
 end_time = 2
 )");
   CHECK(posed_moments(falling.trajectory).times.size() == falling.trajectory.size());
+
+  const Simulation resting = testing::run_scene(turning, {"structure.nodes[1].velocity=[0,0,0]"});
+  CHECK(posed_moments(resting.trajectory).times.size() == resting.trajectory.size());
 }
 
 }  // namespace coarse_steps_test
