@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "render/scene/pose_times.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -126,17 +128,22 @@ class Pace {
         ease_(std::min(o.easing, motion_)) {
     if (o.pace != "even" || !(end_ > start_)) return;
     const Deployment& deployment = run.structure().deployment;
+    PosedMoments moments = posed_moments(run);
     const auto measure = [&](std::size_t i) -> VectorXd {
-      if (deployment.empty()) return run.positions(i);
-      return VectorXd::Constant(1, deployment.fraction(run.node_positions(i), run.state(i).angles));
+      if (deployment.empty()) return moments.poses[i];
+      const System& system = run.model(run.state_before(moments.times[i])).system;
+      const State state = run.state_at(moments.times[i]);
+      VectorXd q(system.coordinates());
+      system.expand(state.z, q);
+      return VectorXd::Constant(1, deployment.fraction(q, state.angles));
     };
     VectorXd last = measure(0);
-    for (std::size_t i = 0; i < run.size(); ++i) {
+    for (std::size_t i = 0; i < moments.times.size(); ++i) {
       VectorXd now = measure(i);
       way_.push_back((way_.empty() ? 0.0 : way_.back()) + (now - last).norm());
-      times_.push_back(run.time(i));
       last = std::move(now);
     }
+    times_ = std::move(moments.times);
     const double whole = way_.back();
     if (!(whole > 0)) way_.clear();
     for (std::size_t i = 0; i < way_.size(); ++i)  // what rests still passes, in a thousandth of the film
@@ -162,7 +169,7 @@ class Pace {
 
  private:
   double start_, end_, motion_, ease_;
-  std::vector<double> times_, way_;  // of the states
+  std::vector<double> times_, way_;  // of the posed moments
 };
 
 }  // namespace

@@ -43,6 +43,10 @@ class MomentSearch {
     bool rests = false, swings = false;
     for (std::size_t i = 0; i + 1 < run.size(); ++i) {
       VectorXd behind = run.velocities(i + 1);
+      if (!(run.time(i + 1) > run.time(i))) {  // an impulse
+        before = std::move(behind);
+        continue;
+      }
       const ByEnds ends = told_by_ends(i, before, behind);
       // A swing from rest to rest at one place: of several such steps the first one tells.
       const bool rested = std::exchange(rests, ends.way <= rest_share * allowed_);

@@ -12,6 +12,7 @@
 #include "core/path/path_run.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
+#include "render/scene/camera_path.hpp"
 #include "render/scene/frame_builder.hpp"
 #include "render/scene/pose_times.hpp"
 #include "render/scene/view.hpp"
@@ -52,6 +53,25 @@ FrameBuilder pictures(const Simulation& run, bool follow = false) {
   style.options.camera = "front";
   style.options.follow = follow;
   return {run.trajectory, style};
+}
+
+// A pendulum that swings by 60 degrees to either side, so many times in so many steps along its path.
+Simulation swinging(int swings, int steps) {
+  const std::string bob = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true},
+         {name = "B", position = [0.8660254037844386, 0, -0.5], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 0}]
+constraints = [{kind = "plane", nodes = ["B"], normal = [0, 1, 0]}]
+[gravity]
+acceleration = [0, 0, -9.81]
+)";
+  const double period = 4 / std::sqrt(9.81) * std::comp_ellint_1(0.5);
+  const std::vector<std::string> changes{"solver.end_time=" + testing::number(swings * period),
+                                         "solver.step=" + testing::number(swings * period / steps)};
+  const Scene scene = read_scene_text(bob, "s.toml", changes);
+  return simulate_on_path(build_model(scene), scene.solver);
 }
 
 // How far the motion leaves the straight lines from moment to moment, at 50 times within each step [m].
@@ -147,25 +167,38 @@ end_time = 3
 // At its turning points a pendulum rests: half a swing is an arc between two states without velocities, which
 // look like a line, a whole one a place.
 TEST_CASE("what swings from rest to rest within a step is seen") {
-  const std::string bob = R"(
-[structure]
-kind = "custom"
-nodes = [{name = "A", position = [0, 0, 0], fixed = true},
-         {name = "B", position = [0.8660254037844386, 0, -0.5], mass = 1}]
-rods = [{nodes = ["A", "B"], mass = 0}]
-constraints = [{kind = "plane", nodes = ["B"], normal = [0, 1, 0]}]
-[gravity]
-acceleration = [0, 0, -9.81]
-)";
-  const double period = 4 / std::sqrt(9.81) * std::comp_ellint_1(0.5);  // of 60 degrees to either side
   const auto [swings, steps] = GENERATE(std::pair{2, 4}, std::pair{4, 4}, std::pair{4, 8});
   CAPTURE(swings, steps);
-  const Scene scene = read_scene_text(bob, "s.toml",
-                                      {"solver.end_time=" + testing::number(swings * period),
-                                       "solver.step=" + testing::number(swings * period / steps)});
-  const Simulation run = simulate_on_path(build_model(scene), scene.solver);
+  const Simulation run = swinging(swings, steps);
   REQUIRE(run.trajectory.size() == static_cast<std::size_t>(steps) + 1);
   CHECK(left_out(run.trajectory, posed_moments(run.trajectory)) < 1.6e-3);
+}
+
+// Each frame shows an equal share of the arc; a thousandth of the film is for what rests, and between two
+// moments, at most 10 degrees of 480 apart, time goes evenly.
+TEST_CASE("an even pace is even within steps of whole swings") {
+  const int steps = GENERATE(2, 4, 400);
+  CAPTURE(steps);
+  const Simulation run = swinging(2, steps);
+  RenderOptions options;
+  options.pace = "even";
+  options.hold = 0;
+  const std::vector<Shot> shots = film_shots(run.trajectory, options);
+  std::vector<double> way{0};
+  constexpr std::size_t fine = 2000;
+  VectorXd last = run.trajectory.positions(0);
+  for (std::size_t k = 1; k <= fine; ++k) {
+    const VectorXd pose =
+        run.trajectory.positions_at(run.trajectory.end_time() * static_cast<double>(k) / fine);
+    way.push_back(way.back() + (pose - last).norm());
+    last = pose;
+  }
+  CHECK(way.back() == Approx(8 * pi / 3).epsilon(1e-4));
+  for (std::size_t k = 0; k < shots.size(); ++k) {
+    const auto at = static_cast<std::size_t>(std::lround(shots[k].t / run.trajectory.end_time() * fine));
+    CHECK(way[at] / way.back() ==
+          Approx(static_cast<double>(k) / static_cast<double>(shots.size() - 1)).margin(0.01));
+  }
 }
 
 TEST_CASE("moments between states are no more than a picture can wait for and none where all goes straight") {
