@@ -213,13 +213,20 @@ double tip_difference(const Trajectory& a, const Trajectory& b) {
 
 constexpr const char* mesh_name = "single precision of the display's mesh";
 
+// Of a choice that solves nothing no number is one.
+void no_model(MeasuredModel& m) {
+  m.solved_coordinates = m.constraints = 0;
+  for (double* x : {&m.cpu_median, &m.cpu_min, &m.cpu_max, &m.memory, &m.difference, &m.tip_difference,
+                    &m.deployment_time, &m.peak_force, &m.cpu_forces})
+    *x = nan;
+}
+
 // What drawing sees of a run: node positions in single precision. It costs no step anything.
 MeasuredModel display_mesh(const Trajectory& run) {
   MeasuredModel m;
   m.choice.name = mesh_name;
-  m.tip_difference = nan;
-  m.cpu_median = m.cpu_min = m.cpu_max = m.memory = m.deployment_time = nan;
-  m.peak_force = m.cpu_forces = nan;
+  no_model(m);
+  m.difference = 0;
   for (std::size_t i = 0; i < run.size(); ++i) {
     const VectorXd x = run.positions(i), drawn = x.cast<float>().cast<double>();
     m.difference = std::max(m.difference, node_distance(x, drawn));
@@ -329,20 +336,25 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
 namespace {
 
 std::vector<std::string> row_of_model(const MeasuredModel& m) {
-  std::vector<std::string> row{m.choice.name, m.outcome, std::to_string(m.solved_coordinates),
-                               std::to_string(m.constraints)};
+  const auto of_model = [&m](Index count) {
+    return m.solved_coordinates > 0 ? std::to_string(count) : std::string("nan");
+  };
+  std::vector<std::string> row{m.choice.name, m.outcome, of_model(m.solved_coordinates),
+                               of_model(m.constraints)};
   for (const double x : {m.cpu_median, m.cpu_min, m.cpu_max, m.memory, m.difference, m.deployment_time})
     row.push_back(exact_number(x));
   row.push_back(exact_number(m.peak_force));
-  row.push_back(m.peak_unique ? "1" : "0");
+  row.push_back(of_model(m.peak_unique ? 1 : 0));
   row.push_back(exact_number(m.cpu_forces));
   row.push_back(exact_number(m.tip_difference));
   return row;
 }
 
 MeasuredModel model_of(const std::vector<std::string>& row, const ModelChoice& choice) {
-  MeasuredModel m{choice, row[1], "", static_cast<Index>(number_of(row[2])),
-                  static_cast<Index>(number_of(row[3]))};
+  const auto count = [](const std::string& cell) {
+    return cell == "nan" ? Index{0} : static_cast<Index>(number_of(cell));
+  };
+  MeasuredModel m{choice, row[1], "", count(row[2]), count(row[3])};
   std::size_t cell = 4;
   for (double* x :
        {&m.cpu_median, &m.cpu_min, &m.cpu_max, &m.memory, &m.difference, &m.deployment_time, &m.peak_force})
@@ -402,10 +414,11 @@ std::vector<MeasuredModel> compare_models(const SceneSource& asked, int repeats,
     } catch (const SceneError& error) {
       if (!base) throw;
       m.outcome = "not possible: " + error.problems().front().message;
+      no_model(m);
     } catch (const PathRefused& refused) {
       if (!base) throw;
       m.outcome = std::string("not possible: ") + refused.what();
-      m.solved_coordinates = 0;
+      no_model(m);
     }
     if (m.outcome != "failed") journal.append(row_of_model(m));
     out.push_back(std::move(m));
@@ -439,9 +452,12 @@ bool is_measured_model(const std::vector<std::string>& row) {
     return x >= 0 && x < 1e9 && x == std::floor(x);
   };
   const std::string& outcome = row[1];
+  const bool none = row[2] == "nan";  // of what solves nothing
   const bool known = outcome.empty() || outcome.starts_with("not possible: ") ||
                      outcome == to_string(RunStatus::completed) || outcome == to_string(RunStatus::deployed);
-  return known && counts(row[2]) && counts(row[3]) && (row[11] == "0" || row[11] == "1") &&
+  return known &&
+         (none ? row[3] == "nan" && row[11] == "nan"
+               : counts(row[2]) && counts(row[3]) && (row[11] == "0" || row[11] == "1")) &&
          std::ranges::none_of(row.begin() + 4, row.begin() + 8,
                               [](const std::string& cell) { return number_of(cell) < 0; });
 }

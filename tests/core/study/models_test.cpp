@@ -216,6 +216,29 @@ TEST_CASE("a model without some of the nodes is compared by those that it has") 
     }
 }
 
+// A row has numbers of what was solved or none at all, but the mesh's what it is there for.
+TEST_CASE("a model that is not possible has no numbers in the table") {
+  const auto file = std::filesystem::temp_directory_path() / "unfurl_impossible_models_test.csv";
+  std::filesystem::remove(file);
+  Table tables[2];  // as it is compared, and from the rows that it kept
+  for (Table& table : tables) {
+    Journal journal(file, models_columns(), 1, models_number_columns(), is_measured_model);
+    table = models_table(compare_models({find_scene("pendulum"), {"solver.end_time=0.1"}}, 1, journal, {}));
+    CHECK(journal.damage().empty());
+  }
+  CHECK(tables[0].rows == tables[1].rows);
+  int impossible = 0;
+  for (const auto& row : tables[0].rows) {
+    INFO(row[0] << ": " << row[1]);
+    const bool refused = row[1].starts_with("not possible: "), mesh = row[1].empty();
+    impossible += refused;
+    CHECK((row[2] == "nan") == (refused || mesh));
+    if (row[2] == "nan") CHECK(std::count(row.begin() + 2, row.end(), "nan") == (mesh ? 11 : 12));
+  }
+  CHECK(impossible > 0);
+  std::filesystem::remove(file);
+}
+
 // Rows that were kept are taken as they are: their times tell. The rest is compared with the same first run,
 // so that differences are those of a comparison in one go, to the last bit.
 TEST_CASE("a comparison of models goes on from the rows that are kept") {
