@@ -76,7 +76,7 @@ std::string identity_of(const SweepPlan& plan) {
   Scene scene = plan.source.read();
   scene.solver = study_solver(scene, varied, plan.measures);
   return text + ", by unfurl " + version() + " in Python\n" + scene_text(scene) + "\n" +
-         unexpanded_text(plan.source);
+         unexpanded_text(plan.source) + files_of_points(plan);
 }
 
 // Empty: nothing is kept. Throws FileError where the folder holds anything else.

@@ -159,7 +159,7 @@ std::string identity(const Scene& scene, const SweepPlan& plan) {
   std::string text = "A sweep over";
   for (const auto& axis : plan.axes) text += " " + axis.key;
   return study_identity(text, scene) + "\n" + idle_text(scene) +
-         (by_variables(plan) ? unexpanded_text(plan.source) : "");
+         (by_variables(plan) ? unexpanded_text(plan.source) : "") + files_of_points(plan);
 }
 
 // A scene that is written out has no variables any more: over those a sweep is made again from the text that

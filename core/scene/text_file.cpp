@@ -86,6 +86,11 @@ FilesBeside::InUse::~InUse() {
   files_in_use = before_;
 }
 
+void FilesBeside::each(const std::function<void(const std::string&, const std::string&)>& told) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [path, file] : read_) told(path, file.text);
+}
+
 TextFile read_file_beside(const std::string& folder, const std::string& name) {
   const std::string path = (fs::path(folder) / name).string();
   std::unique_lock<std::mutex> lock;

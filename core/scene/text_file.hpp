@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -44,6 +45,9 @@ class FilesBeside {
    private:
     FilesBeside* before_;
   };
+
+  // Those that could be read, by their paths.
+  void each(const std::function<void(const std::string& path, const std::string& text)>& told);
 
  private:
   friend TextFile read_file_beside(const std::string& folder, const std::string& name);

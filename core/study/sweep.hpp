@@ -55,6 +55,10 @@ struct SweepPlan {
   SceneError of_axes(const SceneError& error) const;
 };
 
+// Comments of TOML: the contents, told by a checksum, of files that the values of an axis name and the scene
+// as it stands does not. Points of others are of another sweep.
+std::string files_of_points(const SweepPlan& plan);
+
 // What is varied may be wrong as the scene has it: its source, then, has the values of a point that is right.
 void stand_on_a_point(SweepPlan& plan);
 // Throws StudyError (no axis, no measure, a key twice, too many points), SceneError where a value

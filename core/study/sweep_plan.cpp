@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <iomanip>
 #include <limits>
 #include <map>
@@ -13,6 +14,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/export/checksum.hpp"
+#include "core/scene/write.hpp"
 #include "core/study/sweep.hpp"
 #include "core/text/nearest_name.hpp"
 
@@ -275,6 +278,28 @@ std::string unit_of_axis(const SweepPlan& plan, const SweepAxis& axis,
 }
 
 }  // namespace
+
+std::string files_of_points(const SweepPlan& plan) {
+  if (!plan.source.files) return "";
+  const std::set<std::string> own = plan.source.read().files;  // written out with the scene
+  for (const SweepAxis& axis : plan.axes) {
+    const bool in_names = axis.key.starts_with("variables.") && !own.empty();  // "nodes_{k}.csv"
+    if (!axis.numbers.empty() && !in_names) continue;
+    for (const std::string& value : axis.values) try {
+        static_cast<void>(plan.source.read({axis.key + "=" + value}));
+      } catch (const SceneError&) {  // what it names was read
+      }
+  }
+  std::string text;
+  plan.source.files->each([&](const std::string& path, const std::string& contents) {
+    if (own.contains(path)) return;
+    Checksum sum;
+    sum.add(contents);
+    const auto name = std::filesystem::path(path).lexically_relative(plan.source.folder);
+    text += "# " + toml_string(name.string()) + ": " + sum.text() + "\n";
+  });
+  return text;
+}
 
 void stand_on_a_point(SweepPlan& plan) {
   constexpr std::size_t looked_at = 8;  // a mistake elsewhere in a large scene is to be told soon
