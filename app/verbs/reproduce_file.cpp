@@ -14,6 +14,7 @@
 #include "app/output/receipt_formats.hpp"
 #include "app/output/written_files.hpp"
 #include "app/own_options.hpp"
+#include "core/export/formats.hpp"
 #include "core/text/version.hpp"
 #include "render/image/child_process.hpp"
 
@@ -85,6 +86,17 @@ std::optional<Receipt> receipt_of_figure(const fs::path& folder, const WrittenFi
   return found;
 }
 
+// A run that was exported is kept whole, and sums over its motion differ in their last digits from those of
+// one in parts: the format that it was exported to, if to any.
+std::vector<std::string> export_of_run(const std::vector<WrittenFiles::Verdict>& listed) {
+  for (const ExportFormat& format : export_formats())
+    for (const WrittenFiles::Verdict& file : listed)
+      if (file.owner == "run" &&
+          (file.name == format.result || file.name.starts_with(std::string(format.result) + "/")))
+        return {"--export", std::string(format.name)};
+  return {};
+}
+
 // Tables carry no receipt themselves: a figure beside them does or, of a run, scene.toml says all.
 Receipt receipt_beside(const fs::path& file) {
   const std::string extension = file.extension().string();
@@ -106,6 +118,7 @@ Receipt receipt_beside(const fs::path& file) {
       receipt = *figure;
     } else if (own->owner == "run" && name.find('/') == std::string::npos) {
       receipt.command = {"run", "scene"};
+      for (const std::string& word : export_of_run(listed)) receipt.command.push_back(word);
       receipt.name = "scene";
       receipt.scene = bytes_of(*folder / "scene.toml");
     }

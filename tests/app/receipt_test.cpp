@@ -151,6 +151,23 @@ TEST_CASE("a table carries no receipt, and is made again from what lies beside i
   CHECK(run_program({"verify", dir / "run/own.csv"}).code == 5);
 }
 
+// 2501 states: more than one part of a thousand. A run that is exported is kept whole, and adds up the work
+// of its motor from the start on, not part by part.
+TEST_CASE("tables of a run in parts and of one that is kept whole are both made again") {
+  const ScratchDirectory dir;
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--export", "npy"}}) {
+    const std::string out = dir / std::to_string(more.size());
+    std::vector<std::string> words{"run",   "hoop6_motor",       "-o",     out,
+                                   "--set", "solver.end_time=5", "--set",  "solver.at_deployed=pass",
+                                   "--set", "solver.step=0.002", "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    REQUIRE(run_program(words).code == 0);
+    const ProgramResult again = run_program({"reproduce", out + "/series.csv"});
+    INFO(out << again.err);
+    CHECK(again.code == 0);
+  }
+}
+
 // A scene that is written out has no variables any more: its text as it was read is what is kept, and what
 // changed it.
 TEST_CASE("a sweep over variables is made again") {
