@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/diagnostics/books.hpp"
+#include "core/diagnostics/driven_tables.hpp"
 #include "core/diagnostics/good_part.hpp"
 #include "core/diagnostics/rod_peaks.hpp"
 #include "core/integrators/integrator.hpp"
@@ -92,6 +93,12 @@ bool moves(const Simulation& run) {
   return false;
 }
 
+// Where tables prescribe motions faster than steps follow: what to do about a balance.
+std::string words_of_tables(const Simulation& run) {
+  const std::string words = DrivenTables(run.trajectory.structure()).words(run.options.step);
+  return words.empty() ? words : "; " + words;
+}
+
 double deployed_at(const Simulation& run) {
   for (const Event& event : run.events)
     if (event.name == "deployed") return event.t;
@@ -151,7 +158,7 @@ GoodPart good_part(const Simulation& run, const Diagnostics& d) {
     } else if (part.states == i) {
       why << "the energy balance is off by " << off << " J, "
           << (energy > 0 ? 100 * off / energy : std::numeric_limits<double>::infinity())
-          << " % of the energy turned over";
+          << " % of the energy turned over" << words_of_tables(run);
     }
   }
   part.why = why.str();
@@ -356,7 +363,7 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
     else
       text << "the energy balance is off by " << off << " J, " << percent_of(off, turned)
            << " of the energy turned over: take a smaller solver.step"
-           << (dvm ? " or more solver.stages" : "");
+           << (dvm ? " or more solver.stages" : "") << words_of_tables(run);
     warnings.push_back(text.str());
   } else if (off > energy_share * turned && moves(run)) {
     text << "the energy balance is off by " << off << " J, " << percent_of(off, turned)

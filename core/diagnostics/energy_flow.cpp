@@ -9,6 +9,7 @@
 
 #include "core/diagnostics/quintic.hpp"
 #include "core/integrators/row_noise.hpp"
+#include "core/math/barycentric.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/push_responses.hpp"
 #include "core/simulate/stops.hpp"
@@ -26,12 +27,14 @@ namespace {
 constexpr double stiff_at = 2;  // times 1 / h, from which c / m is
 }
 
-EnergyMeter::EnergyMeter(const System& system)
-    : system_(system),
-      loads_(system.has_power(false)),
-      dampers_(system.has_power(true)),
-      drives_(system.rheonomic()) {
+EnergyMeter::EnergyMeter(const Model& model)
+    : system_(model.system),
+      loads_(system_.has_power(false)),
+      dampers_(system_.has_power(true)),
+      drives_(system_.rheonomic()),
+      tables_(model.structure) {
   if (idle()) return;
+  const System& system = model.system;
   index1_ = std::make_unique<Index1>(system_);
   q_.resize(system.coordinates());
   v_.resize(system.coordinates());
@@ -232,6 +235,39 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
   return ends;
 }
 
+namespace {
+
+// Three Gauss points between each two of these times.
+Quadrature gauss_between(const std::vector<double>& points, double from, double to) {
+  static const Quadrature gauss = gauss_legendre(3);
+  std::vector<double> ends = points;
+  ends.insert(ends.begin(), from);
+  ends.push_back(to);
+  const auto parts = static_cast<Index>(ends.size()) - 1;
+  Quadrature out{VectorXd(3 * parts), VectorXd(3 * parts)};
+  for (Index i = 0; i < parts; ++i) {
+    const double begin = ends[static_cast<std::size_t>(i)];
+    const double share = (ends[static_cast<std::size_t>(i) + 1] - begin) / (to - from);
+    out.nodes.segment<3>(3 * i) = ((begin - from) / (to - from) + share * gauss.nodes.array()).matrix();
+    out.weights.segment<3>(3 * i) = share * gauss.weights;
+  }
+  return out;
+}
+
+}  // namespace
+
+// What rods pull with that a step has found at its own points.
+VectorXd EnergyMeter::between_stages(const State& b, double u) const {
+  return b.stage_tension * Barycentric(own_.nodes).values(u);
+}
+
+// Accelerations that alternate from point to point of a table tell no motion of a whole step.
+EnergyMeter::Ends EnergyMeter::cubic_ends(const State& a, const State& b) const {
+  const double h = b.t - a.t;
+  const VectorXd mean = (b.z - a.z) / h;
+  return {a, b, (6 * mean - 4 * a.w - 2 * b.w) / h, (2 * a.w + 4 * b.w - 6 * mean) / h};
+}
+
 void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   if (idle()) return;
   before_ = fresh_ && last_ == a.t ? std::move(after_) : at_state(a);
@@ -244,16 +280,19 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   system_.follow(a);
   const double fastest = dampers_ ? damping_bound(a) : 0.0;
   const bool stiff = h * fastest > stiff_at;
-  const Ends trusted = stiff ? trusted_ends(a, b) : Ends{};
-  const Quintic motion = stiff ? Quintic{trusted.a, trusted.b, trusted.by_a, trusted.by_b, h}
-                               : Quintic{a, b, before_.acceleration, after_.acceleration, h};
+  const std::vector<double> points_inside = drives_ ? tables_.points_within(a.t, b.t) : std::vector<double>();
+  const bool split = !points_inside.empty();
+  const Ends trusted = stiff ? trusted_ends(a, b) : split ? cubic_ends(a, b) : Ends{};
+  const Quintic motion = stiff || split ? Quintic{trusted.a, trusted.b, trusted.by_a, trusted.by_b, h}
+                                        : Quintic{a, b, before_.acceleration, after_.acceleration, h};
   static const Quadrature gauss = gauss_legendre(3), lobatto = gauss_lobatto(4);
   const Index points = b.stage_tension.cols();
   if (points > 0 && points != own_.nodes.size()) own_ = gauss_legendre(static_cast<int>(points));
+  const Quadrature parts = split ? gauss_between(points_inside, a.t, b.t) : Quadrature();
   const double others = load_work + drive_work;
   // Both rules are of order 6; where all that is asked is the multipliers, the ends have them already.
-  const bool by_ends = points == 0 && !loads_ && !dampers_ && before_.known && after_.known;
-  const Quadrature& rule = points > 0 ? own_ : by_ends ? lobatto : gauss;
+  const bool by_ends = points == 0 && !split && !loads_ && !dampers_ && before_.known && after_.known;
+  const Quadrature& rule = split ? parts : points > 0 ? own_ : by_ends ? lobatto : gauss;
   // Warming works against the forces of rods; of stiffly damped ones the states tell these, not the line.
   const bool by_line = stiff && loads_ && points == 0 && system_.elastic_rods();
   const VectorXd pull = by_line ? rod_forces(a) : VectorXd(), change = by_line ? rod_forces(b) - pull : pull;
@@ -262,10 +301,14 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   for (Index i = 0; i < rule.nodes.size(); ++i) {
     const double u = rule.nodes[i], t = a.t + u * h, weight = h * rule.weights[i];
     const bool at_end = by_ends && (i == 0 || i + 1 == rule.nodes.size());
-    const VectorXd z = motion.value(u), w = motion.rate(u);
+    const VectorXd z = motion.value(u);
+    VectorXd w = motion.rate(u);
+    if (points > 0) tension = split ? between_stages(b, u) : VectorXd(b.stage_tension.col(i));
+    if (at_end) lambda_ = i == 0 ? before_.lambda : after_.lambda;
+    const bool known = drives_ && (at_end || (split ? index1_->evaluate_on(t, z, w, unused_, lambda_, tension)
+                                                    : index1_->evaluate(t, z, w, unused_, lambda_, tension)));
     system_.expand(z, q_);
     system_.expand_rate(w, v_);
-    if (points > 0) tension = b.stage_tension.col(i);
     const double* const pulls = points > 0 ? tension.data() : nullptr;
     if (by_line) line = pull + u * change;
     if (loads_) load_work += weight * system_.power(false, t, q_, v_, by_line ? line.data() : pulls);
@@ -274,8 +317,6 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
       system_.expand_rate(stiff_.cwiseProduct(w), stiff_rate_);
       by_stiff -= weight * system_.power(true, t, q_, stiff_rate_, pulls);
     }
-    if (at_end) lambda_ = i == 0 ? before_.lambda : after_.lambda;
-    const bool known = drives_ && (at_end || index1_->evaluate(t, z, w, unused_, lambda_, tension));
     if (at_point && (known || !drives_)) at_point(weight, t, q_, v_, lambda_);
     if (!known) continue;
     system_.target_rate(t, target_rate_);
@@ -312,7 +353,7 @@ RunEnergyFlow::RunEnergyFlow(const Trajectory& run, bool booked)
 void RunEnergyFlow::meter_of(const Model& model) {
   if (model_ == &model) return;
   model_ = &model;
-  meter_ = std::make_unique<EnergyMeter>(model.system);
+  meter_ = std::make_unique<EnergyMeter>(model);
   meter_->at_point = [this](double weight, double t, const VectorXd& q, const VectorXd& v,
                             const VectorXd& lambda) {
     for (std::size_t d = 0; d < drives_.size(); ++d)

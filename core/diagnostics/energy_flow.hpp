@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/diagnostics/driven_tables.hpp"
 #include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/state_forces.hpp"
 #include "core/integrators/index1.hpp"
@@ -30,14 +31,17 @@ bool motors_or_warmed(const Structure& structure);
 // steps. The power -lambda g' of drives and of rods that warm takes its multipliers from the index-1
 // equations at those points, or at four Lobatto points, of which two are the states, where nothing but drives
 // puts in energy. Where rods give and a step does not resolve their waves, lengths between states do not tell
-// forces: the Gauss points are then the step's own, with the axial forces that it has found there. Where
+// forces: the Gauss points are then the step's own, with the axial forces that it has found there. Where the
+// table of a drive has points within a step, between which what it asks for bends faster than that quadrature
+// follows, it is taken between these points, on the cubic through coordinates and rates and at the rates that
+// the table prescribes. Where
 // dampers are stiff (c / m beyond 2 / h), what they take comes from the difference of two motions that are
 // nearly one, which no interpolant tells. What they and dampers beside them take is then that of the states
 // and its rates there, and the motion between the states, of what hangs together with theirs, the cubic
 // through coordinates and rates: order 4.
 class EnergyMeter {
  public:
-  explicit EnergyMeter(const System& system);
+  explicit EnergyMeter(const Model& model);
   // Nothing goes in or out but by potentials and constant loads: no step needs to be added.
   bool idle() const { return !loads_ && !dampers_ && !drives_; }
   // The step from a to b, which follows on the last one; `at_b` where that is known of b already.
@@ -60,12 +64,15 @@ class EnergyMeter {
     VectorXd by_a = {}, by_b = {};
   };
   Ends trusted_ends(const State& a, const State& b);
+  Ends cubic_ends(const State& a, const State& b) const;
+  VectorXd between_stages(const State& b, double u) const;
   bool gone_ = false, rings_ = false;  // in the last step of these, the rates of something
   double most_power_ = 0;              // of dampers there [W]
   double taken_by_stiff(const State& a, const State& b, double fastest, double between, double lost);
 
   System system_;  // follows the states
   bool loads_, dampers_, drives_;
+  DrivenTables tables_;
   std::unique_ptr<Index1> index1_;
   SolvedPoint before_, after_;
   bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since

@@ -59,6 +59,18 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   return assemble(t, z, w, tension) && solve(t, w, acceleration, lambda);
 }
 
+bool Index1::evaluate_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
+                         const VectorXd& tension) {
+  if (!assemble(t, z, w, tension)) return false;
+  VectorXd rate(lambda.size());
+  system_.target_rate(t, rate);
+  rate.noalias() -= G_ * w;
+  settle(VectorXd::Zero(w.size()), rate, acceleration, lambda);
+  w += acceleration;
+  place(t, z, w, tension);
+  return solve(t, w, acceleration, lambda);
+}
+
 bool Index1::evaluate(const State& state, MutVec acceleration, MutVec lambda) {
   return assemble(state.t, state.z, state.w, state.tension) && solve(state.t, state.w, acceleration, lambda);
 }

@@ -28,6 +28,9 @@ class Index1 {
   // `tension`: what rods that give pull with, where their lengths do not tell.
   bool evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acceleration, MutVec lambda,
                 const VectorXd& tension = {});
+  // The same where rates are moved first onto those that the constraints have then.
+  bool evaluate_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
+                   const VectorXd& tension = {});
   // The same at a state. What rods that give pull with is what the state says, where its step did not resolve
   // them and their lengths do not tell.
   bool evaluate(const State& state, MutVec acceleration, MutVec lambda);

@@ -21,7 +21,7 @@ constexpr double seconds_each = 40.0;  // of CPU time, which does not count what
 // far at some three hundred counts, spaced by equal factors.
 class Marathon {
  public:
-  Marathon(const Model& model, const Setting& setting) : system_(model.system), flow_(model.system) {
+  Marathon(const Model& model, const Setting& setting) : system_(model.system), flow_(model) {
     state_ = initial_state(model.structure, system_).state;
     method_ = find_method(setting.options.method)->make(system_, setting.options);
     out_.setting = setting.name;
