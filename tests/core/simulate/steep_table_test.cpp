@@ -10,7 +10,7 @@
 using namespace unfurl;
 using testing::number, testing::run_scene;
 
-namespace dense_table_test {
+namespace steep_table_test {
 
 // A mass of 2 kg is led along a line to 1 + 0.2 sin(3 t) and held from 2 s on. It sets out at 0.6 m/s at once
 // and is stopped at once: near both ends the accelerations of the curve through the rows swing from row to
@@ -45,4 +45,4 @@ TEST_CASE("a table of many rows that begins and ends at speed is followed and it
   }
 }
 
-}  // namespace dense_table_test
+}  // namespace steep_table_test
