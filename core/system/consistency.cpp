@@ -64,6 +64,7 @@ class Checker {
         names_(system.all_names()),
         sources_(system.all_sources()),
         q_(node_positions(structure)),
+        in_space_(space_coordinates(structure)),
         elastic_(std::any_of(structure.rods.begin(), structure.rods.end(),
                              [](const Rod& rod) { return rod.elastic(); })),
         warms_(std::any_of(structure.rods.begin(), structure.rods.end(), [](const Rod& rod) {
@@ -89,8 +90,8 @@ class Checker {
 
   // The longest side of the box that holds the nodes [m]: where the origin lies is no excuse for an error.
   double extent_of_nodes() const {
-    if (q_.size() == 0) return 0.0;
-    const Eigen::Map<const Eigen::Matrix3Xd> x(q_.data(), 3, q_.size() / 3);
+    if (in_space_ == 0) return 0.0;
+    const Eigen::Map<const Eigen::Matrix3Xd> x(q_.data(), 3, in_space_ / 3);
     return (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
   }
 
@@ -218,9 +219,10 @@ class Checker {
   std::vector<std::string> names_;
   std::vector<int> sources_;
   VectorXd q_;
-  bool elastic_;  // a truss that stands still has forces and frequencies all the same
-  bool warms_;    // a row prescribes a motion, whenever that is
-  MatrixXd G_;    // unit rows
+  Index in_space_;  // of q_; behind it lie ghosts
+  bool elastic_;    // a truss that stands still has forces and frequencies all the same
+  bool warms_;      // a row prescribes a motion, whenever that is
+  MatrixXd G_;      // unit rows
   VectorXd norms_;
 };
 

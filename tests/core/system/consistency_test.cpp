@@ -10,21 +10,28 @@ using namespace unfurl;
 namespace consistency_test {
 
 TEST_CASE("nodes that are off their line are refused by the same measure, however far the origin is") {
-  const auto refused = [](double at, double off) {
+  const auto refused = [](double at, double off, const std::string& motor) {
     const std::string x = testing::number(at), y = testing::number(at + off),
                       text = "[structure]\nkind = 'custom'\nnodes = [\n{name='A',position=[" + x + "," + x +
                              "," + x + "],fixed=true},\n{name='B',position=[" + testing::number(at + 0.6) +
                              "," + y + "," + x + "],mass=1},\n{name='C',position=[" +
                              testing::number(at + 1.3) + "," + x + "," + x +
                              "],mass=1}]\nrods=[{nodes=['A','B'],mass=1},{nodes=['B','C'],mass=1}]\n" +
-                             "[[structure.constraints]]\nkind='collinear'\nnodes=['A','B','C']\n";
+                             "[[structure.constraints]]\nkind='collinear'\nnodes=['A','B','C']\n" + motor;
     return testing::error_of(text).find("cannot be assembled as given") != std::string::npos;
   };
+  // Its rotor and drum are numbers, which lie nowhere.
+  const std::string winch =
+      "[[forces]]\nkind='winch'\nnodes=['A','C']\nstall_torque=1\nno_load_speed=300\ndrum_radius=0.1\n"
+      "inertia=0.01\n";
   for (const double at : {0.0, 900.0, -900.0}) {
     INFO(at);
-    CHECK_FALSE(refused(at, 0));
-    CHECK_FALSE(refused(at, 2e-8));
-    CHECK(refused(at, 1e-4));
+    for (const std::string& motor : {std::string(), winch}) {
+      INFO(motor);
+      CHECK_FALSE(refused(at, 0, motor));
+      CHECK_FALSE(refused(at, 2e-8, motor));
+      CHECK(refused(at, 2e-5, motor));
+    }
   }
 }
 
