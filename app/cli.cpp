@@ -181,12 +181,28 @@ struct Adder {
   }
 };
 
+// "-o --quiet", as of a script whose variable is empty: no directory is called so.
+void refuse_options_as_values(const std::vector<std::string>& words) {
+  const auto named = [](const std::string& word, bool with_value) {
+    if (!with_value && (word == "-h" || word == "--help")) return true;
+    const std::string_view name = word == "--output" ? "-o" : std::string_view(word);
+    return std::ranges::any_of(own_options(), [&](const OwnOption& own) {
+      return own.name == name && !(with_value && own.value.empty());
+    });
+  };
+  for (std::size_t i = 0; i + 1 < words.size(); ++i)
+    if (named(words[i], true) && named(words[i + 1], false))
+      throw UsageError((words[i] == "--output" ? "-o" : words[i]) + " needs a value behind it, not " +
+                       words[i + 1]);
+}
+
 Parsed parse(const Command& command, const std::vector<std::string>& words) {
   Parsed parsed;
   Arguments& a = parsed.arguments;
   for (const std::string& word : words)
     if (word.starts_with("-o="))
       throw UsageError("a short option takes its value behind a space: -o " + word.substr(3));
+  refuse_options_as_values(words);
   CLI::App parser;
   parser.set_help_flag();
   parser.allow_extras();

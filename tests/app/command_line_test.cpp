@@ -51,6 +51,9 @@ TEST_CASE("usage errors") {
   check_error({"run", "hoop6", "--betwen", "3"}, 2,
               "unfurl: unfurl run has no option '--betwen'; unfurl help run lists its options");
   check_error({"run", "hoop6", "-o"}, 2, "unfurl: -o needs a value behind it");
+  check_error({"run", "hoop6", "-o", "--quiet"}, 2, "unfurl: -o needs a value behind it, not --quiet");
+  check_error({"run", "hoop6", "--output", "-o"}, 2, "unfurl: -o needs a value behind it, not -o");
+  check_error({"run", "hoop6", "--set", "--json"}, 2, "unfurl: --set needs a value behind it, not --json");
   check_error({"run", "hoop6", "-o", "x", "--set"}, 2, "unfurl: --set needs a value behind it");
   check_error({"figure", "hoop6", "energy", "-o", "x.png", "--dpi", "1e9"}, 2,
               "unfurl: --dpi: must be a number from 20 to 2400; got '1e9'");
