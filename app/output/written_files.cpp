@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 constexpr const char* any_content = "----------------";
 constexpr const char* made = "Made by unfurl ";
 constexpr const char* written_into = "Written into by unfurl ";
-constexpr const char* of_workers = "join/";  // what the workers of a --join keep of their own
+constexpr const char* of_figures = "figure";  // owner of numbers that no other verb makes anew
+constexpr const char* of_workers = "join/";   // what the workers of a --join keep of their own
 
 class Descriptor {
  public:
@@ -226,8 +227,9 @@ bool WrittenFiles::grows_now(const std::string& name) const {
 bool WrittenFiles::known(const std::string& name, const std::string& checksum) const {
   const auto found = lines_.find(name);
   if (found == lines_.end()) return false;
-  return grows_now(name) || std::any_of(found->second.begin(), found->second.end(),
-                                        [&](const Line& line) { return line.checksum == checksum; });
+  return grows_now(name) || std::any_of(found->second.begin(), found->second.end(), [&](const Line& line) {
+           return line.checksum == checksum && (line.owner == owner_ || line.owner != of_figures);
+         });
 }
 
 // Empty for what lies elsewhere.

@@ -125,6 +125,8 @@ bool write_figures(const std::filesystem::path& directory, const std::vector<con
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw FileError(directory, error.value());
+  for (const FigureKind* kind : kinds)  // all, before the first is written
+    if (kind->applies(run, diagnostics)) refuse_other_data(directory / (std::string(kind->name) + ".png"));
   Progress progress("plotting", arguments.quiet);
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     if (interrupted()) return false;
@@ -132,7 +134,6 @@ bool write_figures(const std::filesystem::path& directory, const std::vector<con
     if (!kinds[i]->applies(run, diagnostics)) continue;
     const Figure figure = kinds[i]->make(run, diagnostics);
     const std::string name(kinds[i]->name);
-    refuse_other_data(directory / (name + ".png"));
     for (const char* extension : {".svg", ".pdf", ".png"}) {
       if (interrupted()) return false;
       writer.write(figure, directory / (name + extension));

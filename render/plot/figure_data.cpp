@@ -105,8 +105,10 @@ void refuse_other_data(const std::filesystem::path& picture) {
   std::string line;
   const bool there = file && std::getline(file, line);
   if (there && line + '\n' != figure_csv_header)
-    throw FileError(table,
-                    "holds other data, which the figure's numbers would replace; name the figure otherwise");
+    throw FileError(
+        table,
+        "holds other data, which the figure's numbers would replace; name the figure otherwise, or use "
+        "another directory");
   std::error_code ignored;
   if (!there && std::filesystem::exists(caption, ignored))
     throw FileError(caption, "is not of a figure, whose caption would replace it; name the figure otherwise");

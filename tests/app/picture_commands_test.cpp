@@ -311,6 +311,21 @@ TEST_CASE("a figure is not drawn where its numbers would replace other data") {
                      dir / "all"})
             .code == 5);
   CHECK_FALSE(fs::exists(dir / "all/energy.svg"));
+  // A run's table in the way of one of all: none is drawn. The other way round the figure's numbers are kept.
+  const std::vector<std::string> run{"run", "pendulum", "--set", "solver.end_time=0.1", "--quiet", "-o"},
+      figures{"figure", "pendulum", "all", "--set", "solver.end_time=0.1", "--dpi", "40", "--quiet", "-o"};
+  const auto into = [&](std::vector<std::string> words, const char* folder) {
+    words.push_back(dir / folder);
+    return run_program(words).code;
+  };
+  REQUIRE(into(run, "run") == 0);
+  const auto before = files_in(dir / "run");
+  CHECK(into(figures, "run") == 5);
+  CHECK(files_in(dir / "run") == before);
+  REQUIRE(into(figures, "figures") == 0);
+  const std::string numbers = file_text(dir / "figures/rod_forces.csv");
+  CHECK(into(run, "figures") == 0);
+  CHECK(file_text(dir / "figures/rod_forces.csv.kept-1") == numbers);
 }
 
 }  // namespace picture_commands_test
