@@ -113,7 +113,6 @@ class Change {
   bool fail_at(Index row) {
     return out_.failure = what_pushes(sides_.stops()[side(row)], system_, movable(row)), false;
   }
-  void turn(std::size_t i, bool active) { sides_.set_active(i, active), tell(i); }
   void tell(std::size_t i) {
     if (std::ranges::find(out_.turned, i) == out_.turned.end()) out_.turned.push_back(i);
     out_.changed = true;
@@ -148,6 +147,7 @@ class Change {
     if (!drifts && !turns) return;
     for (Index r = 0; r < count(); ++r)
       if (held(r) || (turns && sides_.is_friction(side(r)))) keep(r);
+    if (!turns) located_ = out_.state;
     out_.state = met;
     std::erase_if(rows, [&](Index r) { return passes(r, u_met[r]); });
     if (rows.empty()) return;
@@ -227,7 +227,7 @@ class Change {
 
   bool choose(const PushResponses& responses) {
     rate_ = responses.rates(out_.state.w);
-    State soon = out_.state;
+    State soon = located_ && out_.impacts.empty() ? *located_ : out_.state;
     soon.t += later_;
     PushResponses::Accelerations by_themselves = responses.accelerations(base_.structure, soon);
     b_ = std::move(by_themselves.value);
@@ -415,7 +415,7 @@ class Change {
       const std::size_t i = side(r), k = static_cast<std::size_t>(r);
       const bool holds = rests_[k] && solution_.held[k];
       if (!sides_.is_friction(i)) {
-        if (sides_.active(i) != holds) turn(i, holds);
+        if (sides_.active(i) != holds) sides_.set_active(i, holds, out_.state.t), tell(i);
         continue;
       }
       const int slip = slips_[k], before = sides_.slip(i);
@@ -479,6 +479,7 @@ class Change {
   const double later_;    // accelerations are those of then
   const bool crowd_;
   ModeChange out_;
+  std::optional<State> located_;   // with the drift of what is held, where its forces were found
   std::vector<std::size_t> rows_;  // sides that may push: stops that are touched, then friction
   std::vector<bool> struck_, passes_, rests_, movable_;
   std::vector<int> slips_;

@@ -9,6 +9,7 @@
 #include "core/constraints/measure_rows.hpp"
 #include "core/forces/spring.hpp"
 #include "core/simulate/friction_hold.hpp"
+#include "core/simulate/push_responses.hpp"
 
 namespace unfurl {
 namespace {
@@ -75,16 +76,13 @@ OneSided::OneSided(const Structure& structure, const SolverOptions& options)
   }
   active_.assign(first_motor() + motors_.size(), false);
   shift_.setZero(static_cast<Index>(stops_.size()));
+  let_go_.setConstant(shift_.size(), unknown);
   friction_force_.setZero(std::ssize(frictions_));
 }
 
 bool OneSided::any_active() const {
   return (laws() && !relaxed_) || std::find(active_.begin(), active_.end(), true) != active_.end() ||
          std::any_of(frictions_.begin(), frictions_.end(), [](const Friction& f) { return f.slip != 0; });
-}
-
-bool OneSided::any_held() const {
-  return !held().empty();
 }
 
 bool OneSided::any_reeled() const {
@@ -169,14 +167,16 @@ void OneSided::stick(std::size_t i, const System& system, const State& state) {
   active_[i] = true;
 }
 
-void OneSided::set_active(std::size_t i, bool active) {
+void OneSided::set_active(std::size_t i, bool active, double t) {
   active_[i] = active;
+  if (is_stop(i)) let_go_[static_cast<Index>(i)] = active ? unknown : t;
 }
 
 void OneSided::archive(Archive& archive) {
   archive(active_);
   archive(relaxed_);
   archive(shift_);
+  archive(let_go_);
   archive(shares_);
   for (Friction& f : frictions_) {
     archive(f.by_load);
@@ -254,8 +254,11 @@ bool OneSided::touches(std::size_t i, const System& system, const State& state) 
 }
 
 void OneSided::touch(const System& system, const State& state) {
-  for (std::size_t i = 0; i < stops_.size(); ++i)
-    shift_[static_cast<Index>(i)] = active_[i] ? 0.0 : std::min(0.0, stops_.gap(i, system, state));
+  for (std::size_t i = 0; i < stops_.size(); ++i) {
+    const double gap = stops_.gap(i, system, state);
+    shift_[static_cast<Index>(i)] = active_[i] ? 0.0 : std::min(0.0, gap);
+    if (state.t > let_go_[static_cast<Index>(i)] && gap > touching(i)) set_active(i, false);
+  }
   if (std::ranges::none_of(motors_, &Drive::began)) return;
   VectorXd q(system.coordinates()), v(q.size());
   system.expand(state.z, q);
@@ -356,6 +359,18 @@ void OneSided::measure_held(const Model& model, const State& state, Probe& probe
   measure_sticking(zero, probe);
 }
 
+// A gap that its force lets go opens with the cube of time, which a step of second order follows with either
+// sign: it is no contact where no more is passed than what pulls away makes in that time.
+bool OneSided::leaves(std::size_t i, const Model& model, const State& state, double passed) const {
+  const double since = state.t - let_go_[static_cast<Index>(i)];
+  if (!(since > 0)) return false;
+  const System system = model.system.at(state);
+  PushResponses responses(system, state);
+  if (responses.ok()) responses.add(measure(i), sign(i), near(i, state), limit_motion(i, state.t));
+  const VectorXd away = responses.accelerations(model.structure, state).value;
+  return away.size() == 1 && passed < away[0] * since * since;
+}
+
 // Of frictions that stick, those that are held and those that rest by them.
 void OneSided::measure_sticking(double zero, Probe& probe) {
   std::vector<Index> held, resting;
@@ -411,8 +426,10 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
       continue;
     }
     double rate = 0;
-    probe.margins[i] = (stops_.gap(k, state, q, v, rate) - shift_[i]) / touching(k);
+    const double gap = stops_.gap(k, state, q, v, rate) - shift_[i];
+    probe.margins[i] = gap / touching(k);
     probe.rates[i] = rate / touching(k);
+    if (probe.margins[i] < -1 && leaves(k, model, state, -gap)) probe.margins[i] = -0.5;
   }
 }
 

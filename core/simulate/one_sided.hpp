@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,16 +58,19 @@ class OneSided {
   }
   // A held stop, a cable that pulls, what sticks, a motor that gives less than it is asked for.
   bool active(std::size_t i) const { return active_[i]; }
-  bool any_active() const;  // what is not as in the model without any of it
-  bool any_held() const;    // stops
-  bool any_reeled() const;  // cables that are paid out or drawn in
+  bool any_active() const;                           // what is not as in the model without any of it
+  bool any_held() const { return !held().empty(); }  // stops
+  bool any_reeled() const;                           // cables that are paid out or drawn in
   const Stops& stops() const { return stops_; }
   // "leaves stop NAME", "NAME pulls", ...: that the mode has begun; of friction, for each that acts there.
   std::vector<Event> events(std::size_t i, double t) const;
 
-  void set_active(std::size_t i, bool active);
-  // A stop that is passed by less than rounding or by what a start left of it counts as touched there, and so
-  // with the room of a motor whose regime has just begun.
+  // `t`: of a stop that is let go, where its force has fallen to zero (leaves()).
+  void set_active(std::size_t i, bool active, double t = std::numeric_limits<double>::quiet_NaN());
+  // Is a stop not yet clear of what let it go?
+  bool any_leaving() const { return (let_go_.array() == let_go_.array()).any(); }
+  // A stop that is passed by less than rounding or by what a start or its leaving left of it counts as
+  // touched there, and so with the room of a motor whose regime has just begun.
   void touch(const System& system, const State& state);
   // A stop that is held or whose gap counts as zero.
   bool touches(std::size_t i, const System& system, const State& state) const;
@@ -187,6 +191,7 @@ class OneSided {
   double room(const Drive& motor, const VectorXd& q, const VectorXd& v, const State& state) {
     return rooms(motor, q, v, state)[static_cast<std::size_t>(motor.law.motor.regime)];
   }
+  bool leaves(std::size_t i, const Model& model, const State& state, double passed) const;
   void measure_sticking(double zero, Probe& probe);
   void measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
                         Probe& probe);
@@ -200,6 +205,7 @@ class OneSided {
   std::vector<bool> active_;
   bool relaxed_ = false;  // cables and motors are by the law of all their modes
   VectorXd shift_;        // of the stops' gaps [m] or [rad]
+  VectorXd let_go_;       // when a stop was that has no room yet; NaN: none such
   MatrixXd shares_;
   VectorXd friction_force_;  // of those that stick, at the state that is measured
   double step_;

@@ -341,7 +341,7 @@ bool Stepper::Loop::leaves_cubic(const Probe& to, const MatrixXd& margins) {
 void Stepper::Loop::warn_of_long_step(const Probe& to, const VectorXd& off, const VectorXd& fastest) {
   // A quarter comes of a force that begins with the step and grows with the square of time.
   constexpr double part_of_way = 0.3, rounding = 1e4;
-  if (run_.options.adaptive) return;
+  if (run_.options.adaptive || sides_.any_leaving()) return;
   for (std::size_t k = 0; k < sides_.first_friction(); ++k) {
     const auto i = static_cast<Index>(k);
     const double way = to.at * std::max({fastest[i], std::abs(begin_.rates[i]), std::abs(to.rates[i])});

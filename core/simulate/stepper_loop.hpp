@@ -262,7 +262,7 @@ class Stepper::Loop {
 
   // Margins of the present state, those of the last accepted one where they still hold.
   void begin() {
-    if (have_begin_ && !(begin_.margins.minCoeff() < 0)) return;
+    if (have_begin_ && !(begin_.margins.minCoeff() < 0) && !sides_.any_leaving()) return;
     sides_.touch(system(), now());
     sides_.measure(model(), now(), true, begin_);
     have_begin_ = true;
