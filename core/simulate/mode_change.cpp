@@ -127,7 +127,8 @@ class Change {
   }
 
   // A state may miss the constraints by what the method drifts from them, `met` does not: what holds has no
-  // rate all the same, and friction turns round where u is zero. It stays so, and what rested does.
+  // rate all the same, no impact leaves any of that, and friction turns round where u is zero. It stays so,
+  // and what rested does.
   void settle(const PushResponses& responses) {
     const State met = which_.empty() ? out_.state : hand_over(base_, out_.state, base_).state;
     const VectorXd u = responses.rates(out_.state.w), u_met = responses.rates(met.w);
@@ -141,7 +142,9 @@ class Change {
     };
     bool drifts = false, turns = false;
     for (Index r = 0; r < count(); ++r) {
-      drifts = drifts || (held(r) && std::abs(u_met[r]) > sides_.zero_rate(side(r)));
+      const bool met_now = sides_.is_stop(side(r)) && crossed(r);
+      const double off = held(r) ? u_met[r] : met_now ? u_met[r] - u[r] : 0.0;
+      drifts = drifts || std::abs(off) > sides_.zero_rate(side(r));
       if (sides_.is_friction(side(r)) && crossed(r)) keep(r), turns = !rows.empty();
     }
     if (!drifts && !turns) return;
@@ -360,10 +363,7 @@ class Change {
   bool solve() {
     for (;;) {
       const auto solution = solve_box(D_, b_, low_, high_);
-      if (!solution) {
-        out_.failure = "a drive pushes against what stops hold";
-        return false;
-      }
+      if (!solution) return out_.failure = "a drive pushes against what stops hold", false;
       solution_ = *solution;
       forget_rounding();
       bool any = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stops and cables that are left where their force falls to zero, by methods of low order and by those whose
-// rates drift from the constraints.
+// Stops and cables that are left where their force falls to zero, and stops that are met while friction acts,
+// by methods of low order and by those whose rates drift from the constraints.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -77,6 +77,35 @@ end_time = 0.62
   return scene;
 }
 
+// A body on a rod, in a plane, with a dry hinge: a spring throws it on a stop, on which it does not rebound.
+const std::string& dry_hinge() {
+  static const std::string scene =
+      R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "X", position = [1, 0, 0], fixed = true},
+  {name = "S", position = [2, 0.5, 0], fixed = true}, {name = "P", position = [0, 1, 0], mass = 0.18}]
+rods = [{nodes = ["O", "P"], mass = 0}]
+constraints = [{kind = "plane", nodes = ["P"], normal = [0, 0, 1]},
+  {kind = "coordinate_stop", name = "s", nodes = ["P"], direction = [1, 0, 0], max = 0.6, restitution = 0}]
+[[forces]]
+kind = "spring"
+nodes = ["S", "P"]
+stiffness = 44.5
+damping = 1.95
+free_length = 0.2
+[[forces]]
+kind = "friction"
+name = "f"
+nodes = ["X", "O", "P"]
+axis = [0, 0, 1]
+kinetic = 5
+static = 5
+[solver]
+end_time = 0.3
+)";
+  return scene;
+}
+
 std::vector<double> times(const Simulation& run, const std::string& kind) {
   std::vector<double> out;
   for (const Event& event : run.events)
@@ -121,6 +150,21 @@ TEST_CASE("a stop that drifting methods let go is left where its force is zero")
       const double share = std::pow(step / 0.002, 4);
       CHECK(times(run, "free").back() == Approx(times(truth, "free").back()).margin(5e-7 * share));
       CHECK(times(run, "contact").back() == Approx(times(truth, "contact").back()).margin(1e-6 * share));
+    }
+}
+
+// It rests behind the impact, by stop and friction, and does not slip at a rate that the method's own drift
+// from the rod has left.
+TEST_CASE("what comes to rest on a stop sticks there by every method") {
+  for (const char* method : {"dvm", "rk4", "rk4_projected", "generalized_alpha"})
+    for (const double step : {0.005, 0.002, 0.0005}) {
+      INFO(method << ", step " << step);
+      const Simulation run = by(dry_hinge(), "method = \"" + std::string(method) + "\"", step);
+      CHECK(times(run, "contact").size() == 1);
+      CHECK(times(run, "reversal").empty());
+      REQUIRE(!run.events.empty());
+      CHECK(run.events.back().kind == "stick");
+      CHECK(run.events.back().t == times(run, "contact").back());
     }
 }
 
