@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/diagnostics/quintic.hpp"
+#include "core/forces/elastic_rods.hpp"
 #include "core/integrators/row_noise.hpp"
 #include "core/math/barycentric.hpp"
 #include "core/simulate/latch.hpp"
@@ -32,9 +33,12 @@ EnergyMeter::EnergyMeter(const Model& model)
       loads_(system_.has_power(false)),
       dampers_(system_.has_power(true)),
       drives_(system_.rheonomic()),
-      tables_(model.structure) {
+      tables_(model.structure),
+      damped_rods_(model.system) {
   if (idle()) return;
   const System& system = model.system;
+  by_tension_ =
+      drives_ || system.by_tension() || (system.elastic_rods() && system.elastic_rods()->has_power());
   index1_ = std::make_unique<Index1>(system_);
   q_.resize(system.coordinates());
   v_.resize(system.coordinates());
@@ -73,7 +77,13 @@ double EnergyMeter::damping_bound(const State& state) {
   system_.expand(state.z, q_);
   system_.expand_rate(state.w, v_);
   system_.force_derivatives(state.t, q_, v_, derivatives_);
-  return rate_bound(derivatives_.by_w.sum(), system_.moving_mass());
+  damping_ = derivatives_.by_w.sum();
+  if (rods_apart_) damping_ -= damped_rods_.derivative(system_, q_);
+  return rate_bound(damping_, system_.moving_mass());
+}
+
+double EnergyMeter::dampers_take(double t, const VectorXd& v, const double* tension) const {
+  return -system_.power(true, t, q_, v, tension) - (rods_apart_ ? damped_rods_.power(t, q_, v) : 0.0);
 }
 
 double EnergyMeter::energy(const State& state) {
@@ -87,8 +97,7 @@ double EnergyMeter::damping_power(const State& state, const VectorXd& accelerati
                                   double later) {
   system_.expand(state.z + after * state.w, q_);
   system_.expand_rate(stiff_.cwiseProduct(state.w + after * acceleration), v_);
-  return -system_.power(true, state.t + later, q_, v_,
-                        state.tension.size() > 0 ? state.tension.data() : nullptr);
+  return dampers_take(state.t + later, v_, state.tension.size() > 0 ? state.tension.data() : nullptr);
 }
 
 // (P_0 + P_1) h / 2 + (P_0' - P_1') h^2 / 12, of order 4 where the power is smooth at the step; the second
@@ -190,7 +199,7 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
             before_.acceleration,
             after_.acceleration};
   const double h = b.t - a.t;
-  const SparseRows& by_w = derivatives_.by_w.sum();
+  const SparseRows& by_w = damping_;
   if (parts_.empty()) parts_ = parts_of(system_), damped_ = parts_of(system_, &by_w);
   std::vector<PartRates> rates(parts_.size());
   gone_ = rings_ = false;
@@ -275,9 +284,14 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   fresh_ = true;
   last_ = b.t;
   const double h = b.t - a.t;
+  const Index told = b.stage_tension.cols();
+  if (told > 0 && told != own_.nodes.size()) own_ = gauss_legendre(static_cast<int>(told));
+  rods_apart_ = dampers_ && told > 0 && b.tension.size() > 0;
+  const Index points = by_tension_ ? told : 0;
   const double by_friction = taken(b) - taken(a);
-  dissipated += by_friction;
   system_.follow(a);
+  const double by_rods = rods_apart_ ? damped_rods_.taken(system_, a, b, own_) : 0.0;
+  dissipated += by_friction + by_rods;
   const double fastest = dampers_ ? damping_bound(a) : 0.0;
   const bool stiff = h * fastest > stiff_at;
   const std::vector<double> points_inside = drives_ ? tables_.points_within(a.t, b.t) : std::vector<double>();
@@ -286,8 +300,6 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   const Quintic motion = stiff || split ? Quintic{trusted.a, trusted.b, trusted.by_a, trusted.by_b, h}
                                         : Quintic{a, b, before_.acceleration, after_.acceleration, h};
   static const Quadrature gauss = gauss_legendre(3), lobatto = gauss_lobatto(4);
-  const Index points = b.stage_tension.cols();
-  if (points > 0 && points != own_.nodes.size()) own_ = gauss_legendre(static_cast<int>(points));
   const Quadrature parts = split ? gauss_between(points_inside, a.t, b.t) : Quadrature();
   const double others = load_work + drive_work;
   // Both rules are of order 6; where all that is asked is the multipliers, the ends have them already.
@@ -312,10 +324,10 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
     const double* const pulls = points > 0 ? tension.data() : nullptr;
     if (by_line) line = pull + u * change;
     if (loads_) load_work += weight * system_.power(false, t, q_, v_, by_line ? line.data() : pulls);
-    if (dampers_) taken_between -= weight * system_.power(true, t, q_, v_, pulls);
+    if (dampers_) taken_between += weight * dampers_take(t, v_, pulls);
     if (stiff) {
       system_.expand_rate(stiff_.cwiseProduct(w), stiff_rate_);
-      by_stiff -= weight * system_.power(true, t, q_, stiff_rate_, pulls);
+      by_stiff += weight * dampers_take(t, stiff_rate_, pulls);
     }
     if (at_point && (known || !drives_)) at_point(weight, t, q_, v_, lambda_);
     if (!known) continue;
@@ -323,8 +335,8 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
     drive_work -= weight * lambda_.dot(target_rate_);
   }
   if (stiff) {
-    const double of_others = taken_between - by_stiff,
-                 lost = energy(a) - energy(b) + load_work + drive_work - others - by_friction - of_others;
+    const double of_others = taken_between - by_stiff, lost = energy(a) - energy(b) + load_work + drive_work -
+                                                              others - by_friction - by_rods - of_others;
     dissipated += of_others + taken_by_stiff(a, b, fastest, by_stiff, lost);
   } else {
     dissipated += taken_between;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/diagnostics/damped_rods.hpp"
 #include "core/diagnostics/driven_tables.hpp"
 #include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/state_forces.hpp"
@@ -31,7 +32,8 @@ bool motors_or_warmed(const Structure& structure);
 // steps. The power -lambda g' of drives and of rods that warm takes its multipliers from the index-1
 // equations at those points, or at four Lobatto points, of which two are the states, where nothing but drives
 // puts in energy. Where rods give and a step does not resolve their waves, lengths between states do not tell
-// forces: the Gauss points are then the step's own, with the axial forces that it has found there. Where the
+// forces: the Gauss points are then the step's own, with the axial forces that it has found there, and what
+// dampers of these rods take is that of the step's own rates (damped_rods.hpp). Where the
 // table of a drive has points within a step, between which what it asks for bends faster than that quadrature
 // follows, it is taken between these points, on the cubic through coordinates and rates and at the rates that
 // the table prescribes. Where
@@ -56,7 +58,8 @@ class EnergyMeter {
   SolvedPoint at_state(const State& state);  // where nothing is known the acceleration is zero
   double damping_power(const State& state, const VectorXd& acceleration, double after, double later = 0);
   double damping_bound(const State& state);
-  VectorXd rod_forces(const State& state);  // of those that give [N]
+  double dampers_take(double t, const VectorXd& v, const double* tension) const;  // at q_ [W]
+  VectorXd rod_forces(const State& state);                                        // of those that give [N]
   double taken(const State& state);
   double energy(const State& state);
   struct Ends {  // of a step: states, accelerations
@@ -73,11 +76,15 @@ class EnergyMeter {
   System system_;  // follows the states
   bool loads_, dampers_, drives_;
   DrivenTables tables_;
+  DampedRods damped_rods_;
+  bool by_tension_ = false;  // powers depend on the forces of rods that give
+  bool rods_apart_ = false;  // in this step, from what is said of dampers otherwise
   std::unique_ptr<Index1> index1_;
   SolvedPoint before_, after_;
   bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since
   VectorXd q_, v_, unused_, lambda_, target_rate_, stiff_rate_;
   ForceDerivatives derivatives_;
+  SparseRows damping_;                 // of them, by rates
   std::vector<Index> parts_, damped_;  // of each coordinate; by dampers, too
   VectorXd stiff_;   // 1: a coordinate that a stiff damper moves, or what hangs together with it
   double last_ = 0;  // time of the state that after_ is of

@@ -412,10 +412,12 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   state.stage_tension.resize(0, 0);
   const double followed = resolved * (c_.s - 1);
   const bool unresolved = system_.elastic_rods() != nullptr && eq_.h_omega() > followed && !eq_.held();
+  const bool damped = unresolved && system_.has_power(true);
   if (eq_.rods.as_unknowns &&
-      (system_.rheonomic() || system_.by_tension() || system_.elastic_rods()->has_power()))
+      (system_.rheonomic() || system_.by_tension() || system_.elastic_rods()->has_power() || damped))
     state.stage_tension = unresolved ? eq_.stage_tension(unheld) : eq_.rods.tension;
   if (unresolved) eq_.end_tension(w1_, followed, state.tension, state.tension_error);
+  if (damped && !eq_.rods.as_unknowns) state.stage_tension = eq_.rods.tension;  // by lengths there
   report.weak_end = !eq_.at_ends && ends_weakly(report);
 }
 
