@@ -14,8 +14,9 @@ namespace unfurl {
 
 namespace {
 
-// Times and values of a CSV table, into the entry's parameters, and where they stand.
-void read_table(TableReader& entry, ParamSet& values, const std::string& folder,
+// Times and values of a CSV table, into the entry's parameters, and where they stand. An entry that is
+// switched off does without its file.
+void read_table(TableReader& entry, ParamSet& values, const std::string& folder, bool enabled,
                 std::vector<SourceLocation>& places, SceneNotes& notes) {
   static const std::vector<CsvColumn> columns = {{"t", "s", true, true}, {"value", "", true, true}};
   const std::string name = values.text("table");
@@ -23,6 +24,7 @@ void read_table(TableReader& entry, ParamSet& values, const std::string& folder,
   if (!values.vector("times").empty() || !values.vector("values").empty())
     return entry.problem("table", "give either table, or times and values");
   const TextFile file = read_file_beside(folder, name);
+  if (!file.error.empty() && !enabled) return;
   notes.files.insert(file.path);
   if (!file.error.empty()) return entry.problem("table", file.error);
   std::vector<double> times, sizes;
@@ -201,10 +203,12 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
   if (element.values.has("table")) {
     element.table = element.values.text("table");
     std::vector<SourceLocation> rows;
-    read_table(entry, element.values, folder, rows, notes);
+    read_table(entry, element.values, folder, element.enabled, rows, notes);
     check_table(entry, element.values, may_jump(element.kind), rows, notes);
   }
-  if (element.values.has("motion")) check_motion(entry, element.values);
+  const bool left_out =
+      !element.enabled && element.values.has("table") && !element.values.text("table").empty();
+  if (element.values.has("motion") && !left_out) check_motion(entry, element.values);
   entry.warn_idle(kind->params(), element.values);
   if (element.values.has("stiffness") && !entry.has("stiffness") && !entry.has("damping"))
     entry.problem("stiffness", "is missing, and so is damping: it would do nothing");

@@ -79,7 +79,7 @@ class Expansion {
     if (key == "title") return;  // its braces are parameters of the structure (title.hpp)
     if (is_expression(tree)) {
       keys_.insert(key);
-      if (const auto value = value_of(tree, key)) become(tree, *value);
+      if (const auto value = value_of(tree, key)) become(tree, without_rounding(*value, Rounds::its_own));
     } else if (tree.kind == Kind::text && braces_) {
       fill_braces(tree, key);
     }
