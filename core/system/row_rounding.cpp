@@ -2,10 +2,46 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "core/system/system_data.hpp"
 
 namespace unfurl {
+namespace {
+
+// Rows [first, end) of one constraint, and which of them the others or nothing at all make up: Gram-Schmidt
+// from the largest row on. Scaled so that what is left of a row is to be compared with 1.
+void add_dependent(const SparseRows& G, int first, int end, double negligible, std::vector<int>& dependent) {
+  using Row = Eigen::SparseVector<double>;
+  std::vector<std::pair<int, Row>> rest;
+  for (int r = first; r < end; ++r) rest.emplace_back(r, G.row(r).transpose());
+  while (!rest.empty()) {
+    const auto most = std::max_element(rest.begin(), rest.end(), [](const auto& a, const auto& b) {
+      return a.second.norm() < b.second.norm();
+    });
+    const double norm = most->second.norm();
+    if (norm <= negligible) break;
+    const Row unit = most->second / norm;
+    rest.erase(most);
+    for (auto& [r, row] : rest) row -= Row(unit * unit.dot(row));
+  }
+  for (const auto& [r, row] : rest) dependent.push_back(r);
+}
+
+}  // namespace
+
+void System::Data::move_origin() {
+  constexpr double far = 100, rounded = 64 * std::numeric_limits<double>::epsilon();
+  const double reach = coordinates > 0 ? start.lpNorm<Eigen::Infinity>() : 0.0;
+  if (!eliminated || rows == 0 || !(reach > far * lengths.maxCoeff())) return;
+  origin.resize(B.cols());
+  for (Index i = 0; i < origin.size(); ++i) origin[i] = start[free_coordinates[static_cast<std::size_t>(i)]];
+  q0 += B * origin;
+  // The start itself has no error but its own rounding.
+  for (Index i = 0; i < coordinates; ++i)
+    if (std::abs(q0[i] - start[i]) <= rounded * reach) q0[i] = start[i];
+}
 
 void System::Data::clear_rounding(const std::vector<double>& node_entries, SparseRows& G) const {
   // A few products and sums; coefficients of what was eliminated are of order one.
@@ -20,6 +56,54 @@ void System::Data::clear_rounding(const std::vector<double>& node_entries, Spars
     for (const double* x = begin; x < end; ++x) left = std::max(left, std::abs(*x));
     if (left <= rounding * whole) std::fill(begin, end, 0.0);
   }
+  for (const int r : implied)
+    std::fill(G.valuePtr() + G.outerIndexPtr()[r], G.valuePtr() + G.outerIndexPtr()[r + 1], 0.0);
+}
+
+// A row that follows from the eliminated ones has no gradient in any pose that these allow, where one that is
+// next to a singular pose has one elsewhere: two poses, far from the start and from each other, tell.
+void System::find_implied_rows() {
+  constexpr double digits = 1e-7;  // of positions; what is given with fewer is refused
+  Data& d = *data_;
+  if (!d.eliminated || d.rows == 0) return;
+  std::vector<int> source = sources();
+  for (const Drive& drive : d.drives) source[static_cast<std::size_t>(drive.row)] = -1;
+  const auto same = [&](Index r, Index s) {
+    return source[static_cast<std::size_t>(r)] == source[static_cast<std::size_t>(s)];
+  };
+  const Index n = solved_coordinates();
+  SparseRows G = d.pattern;
+  std::vector<double> scratch;
+  std::vector<Eigen::Triplet<double>> entries;
+  const VectorXd start = reduce(d.start);
+  VectorXd q(d.coordinates), z(n), whole(d.rows);
+  for (int pose = 0; pose < 2; ++pose) {
+    for (Index i = 0; i < n; ++i)
+      z[i] = start[i] + d.lengths.maxCoeff() * std::cos(1.0 + pose + (2.3 + pose) * static_cast<double>(i));
+    expand(z, q);
+    jacobian(q, G, scratch);
+    const double* entry = scratch.data();
+    for (Index r = 0; r < d.rows; ++r) {
+      const double* const end = scratch.data() + d.row_ends[static_cast<std::size_t>(r)];
+      for (whole[r] = 0; entry < end; ++entry) whole[r] = std::max(whole[r], std::abs(*entry));
+    }
+    for (int r = 0; r < G.rows(); ++r) {
+      if (source[static_cast<std::size_t>(r)] < 0) continue;
+      double most = std::numeric_limits<double>::min();
+      for (Index s = r; s >= 0 && same(s, r); --s) most = std::max(most, whole[s]);
+      for (Index s = r; s < d.rows && same(s, r); ++s) most = std::max(most, whole[s]);
+      for (SparseRows::InnerIterator it(G, r); it; ++it)
+        if (it.value() != 0)
+          entries.emplace_back(r, static_cast<int>(it.col() + pose * n), it.value() / most);
+    }
+  }
+  SparseRows both(d.rows, 2 * n);
+  both.setFromTriplets(entries.begin(), entries.end());
+  for (int first = 0, end = 0; first < d.rows; first = end) {
+    for (end = first + 1; end < d.rows && same(end, first);) ++end;
+    if (source[static_cast<std::size_t>(first)] >= 0) add_dependent(both, first, end, digits, d.implied);
+  }
+  std::sort(d.implied.begin(), d.implied.end());
 }
 
 }  // namespace unfurl

@@ -146,6 +146,7 @@ void System::Data::build_coordinates() {
     }
   mass = SparseRows(B.transpose() * node_mass) * B;
   mass.makeCompressed();
+  move_origin();
 }
 
 void System::Data::build_forces(const Structure& structure) {
@@ -245,6 +246,7 @@ System::System(const Structure& structure, bool eliminate_linear) {
   data_ = std::move(data);
   set_loads(structure);
   std::vector<double> scratch;
+  find_implied_rows();
   jacobian(data_->start, data_->pattern, scratch);  // tells which entries are large
 }
 
@@ -324,7 +326,10 @@ void System::expand(const ConstVec& z, MutVec q) const {
     return;
   }
   q = data_->q0;
-  q.noalias() += data_->B * z;
+  if (data_->origin.size() == 0)
+    q.noalias() += data_->B * z;
+  else
+    q.noalias() += data_->B * (z - data_->origin);
 }
 
 void System::expand_rate(const ConstVec& w, MutVec v) const {
@@ -362,6 +367,7 @@ bool System::constant_forces() const {
 
 void System::constraint(double t, const ConstVec& q, MutVec phi) const {
   values_at(data_->kept, moment(t), q, phi);
+  for (const int row : data_->implied) phi[row] = 0;
 }
 
 bool System::rheonomic() const {
@@ -388,6 +394,7 @@ void System::constraint_bias(double t, const ConstVec& q, const ConstVec& v, Mut
     out += block->rows();
   }
   if (data_->rheonomic) add_targets(data_->kept, 2, t, -1.0, bias);
+  for (const int row : data_->implied) bias[row] = 0;
 }
 
 SparseRows System::jacobian_pattern() const {

@@ -178,6 +178,7 @@ class System {
   };
   void set_loads(const Structure& structure);
   void measure_angles(const State& state);
+  void find_implied_rows();
 
   std::shared_ptr<Data> data_;
   std::shared_ptr<const Constant> constant_;

@@ -19,6 +19,10 @@ struct System::Data {
   VectorXd gravity_force;                           // its part, for energies
   SparseRows node_mass, mass, B, B_transposed;
   VectorXd q0, start;
+  // z that q0 is at: zero unless the structure is far from the origin (size 0: zero). There q0 + B z would be
+  // known to several times what rounding the coordinates leaves, and rows that depend on each other fit to
+  // that.
+  VectorXd origin;
   std::vector<int> free_coordinates, ghosts;
   std::vector<Index>
       integrators;  // solved coordinates that are integrals of controllers: they have no energy
@@ -38,6 +42,9 @@ struct System::Data {
   std::vector<std::size_t> block_entries;  // entries of the node Jacobian of each kept block
   std::size_t entries = 0;
   std::vector<int> row_ends;  // of the kept rows, among those entries
+  // Kept rows that the eliminated ones (and others of their own constraint) imply, to the digits that
+  // positions are given with: they are no equations, their errors are what positions have.
+  std::vector<int> implied;
   // The node Jacobian of all blocks, entry by entry: columns, where rows end, entries of each block.
   std::vector<int> all_columns;
   std::vector<std::size_t> all_row_ends, all_block_entries;
@@ -48,11 +55,13 @@ struct System::Data {
   void build_blocks(const Structure& structure, bool eliminate_linear);
   void add_blocks(const Structure& structure, bool eliminate_linear);
   void build_coordinates();
+  void move_origin();
   void build_forces(const Structure& structure);
   void find_integrators(const Structure& structure);
   void build_jacobian_map();
-  // Rows of G_z that are rounding alone, of entries of the node Jacobian that cancel, become zero: rows are
-  // taken in units of their own size where they are solved for, and would hold what they do not touch.
+  // Implied rows of G_z and those that are rounding alone, of entries of the node Jacobian that cancel,
+  // become zero: rows are taken in units of their own size where they are solved for, and would hold what
+  // they do not touch.
   void clear_rounding(const std::vector<double>& entries, SparseRows& G) const;
   void build_stencils();
   void find_constraint_rows(std::size_t constraints);

@@ -111,8 +111,11 @@ void System::reduce_sizes(const ConstVec& f, MutVec r) const {
     for (SparseRows::InnerIterator it(data_->B, i); it; ++it) r[it.col()] += std::abs(it.value() * f[i]);
 }
 
-void System::expand_stages(const Interleaved& z, Index first, Interleaved& Q) const {
+void System::expand_stages(const Interleaved& from_origin, Index first, Interleaved& Q) const {
   const SparseRows& B = data_->B;
+  Interleaved moved;
+  if (data_->origin.size() > 0) moved = from_origin.colwise() - data_->origin;
+  const Interleaved& z = data_->origin.size() > 0 ? moved : from_origin;
   const Index stride = Q.cols();
   with_wide_columns(static_cast<int>(z.cols()), [&B, stride, from = z.data(), q0 = data_->q0.data(),
                                                  first_row = Q.data() + first](auto k) {
@@ -145,6 +148,7 @@ void System::constraint_stages(const double* t, const Interleaved& Q, Index firs
     }
     row += rows;
   }
+  for (const int implied : data_->implied) phi.row(implied).setZero();
 }
 
 void System::add_constraint_force_stages(const Interleaved& Q, Index first, const Interleaved& lambda,

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rows of constraints that nothing is left of once linear ones are eliminated.
+#include <Eigen/Geometry>
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
 
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
@@ -39,6 +45,109 @@ TEST_CASE("a line through two nodes on guides and a fixed one moves as its one f
       CHECK(std::abs(q[0] - a[0] - way) <= 1e-9);
       CHECK(std::abs(q[3] - (c + s * (a - c))[0] - s * way) <= 1e-9);
     }
+}
+
+// Two or three equal cranks of one length on a fixed base and the coupler that their ends share, all held in
+// one plane, and a constraint that this implies across the plane: as often drawn, and overconstrained. It has
+// one freedom, the angle from the vertical.
+struct Parallelogram {
+  bool collinear = false;  // the coupler's middle E on the line of its ends; else the coupler coplanar
+  bool third = false;      // a crank to E, too
+  Mat3 turn = Mat3::Identity();
+  Vec3 shift = Vec3::Zero();
+  int decimals = 16;
+
+  std::string place(const Vec3& x) const { return vector(turn * x + shift, decimals); }
+  static std::string vector(const Vec3& x, int decimals) {
+    char text[120];
+    std::snprintf(text, sizeof text, "[%.*f, %.*f, %.*f]", decimals, x[0], decimals, x[1], decimals, x[2]);
+    return text;
+  }
+  std::string scene() const {
+    std::string text = "[structure]\nkind = 'custom'\n";
+    const auto node = [&](const char* name, const Vec3& x, const char* rest) {
+      text += std::string("[[structure.nodes]]\nname = '") + name + "'\nposition = " + place(x) + "\n" +
+              rest + "\n";
+    };
+    const auto rod = [&](const char* a, const char* b) {
+      text += std::string("[[structure.rods]]\nnodes = ['") + a + "', '" + b + "']\nmass = 1\n";
+    };
+    node("A", {0, 0, 0}, "fixed = true");
+    node("B", {1, 0, 0}, "fixed = true");
+    node("C", {0.3, 0, 1}, "mass = 1");
+    node("D", {1.3, 0, 1}, "mass = 1");
+    rod("A", "C"), rod("B", "D");
+    if (collinear) {
+      node("E", {0.8, 0, 1}, "mass = 1");
+      rod("C", "E"), rod("E", "D");
+    } else {
+      rod("C", "D");
+    }
+    if (third) node("M", {0.5, 0, 0}, "fixed = true"), rod("M", "E");
+    text += std::string("[[constraints]]\nkind = 'plane'\nnodes = ") +
+            (collinear ? "['C', 'D', 'E']" : "['C', 'D']") +
+            "\nnormal = " + vector(turn * Vec3::UnitY(), 16) + "\n[[constraints]]\nkind = " +
+            (collinear ? "'collinear'\nnodes = ['C', 'D', 'E']" : "'coplanar'\nnodes = ['A', 'B', 'C', 'D']");
+    return text + "\n[gravity]\nacceleration = " + vector(turn * Vec3(0, 0, -9.81), 16) +
+           "\n[solver]\nstep = 0.01\nend_time = 0.3\n";
+  }
+  // C - A at the end: J angle'' = M g l sin(angle), a thousand steps of Runge and Kutta's method.
+  Vec3 end() const {
+    const double cranks = third ? 3 : 2,
+                 moved = collinear ? 3 + 2 : 2 + 1;  // nodes and coupler move as C does
+    const double l = std::hypot(0.3, 1), J = (cranks / 3 + moved) * l * l,
+                 M = (cranks / 2 + moved) * 9.81 * l;
+    using Angle = std::array<double, 2>;
+    const auto rate = [&](const Angle& y) { return Angle{y[1], M / J * std::sin(y[0])}; };
+    const auto along = [](const Angle& y, double h, const Angle& k) {
+      return Angle{y[0] + h * k[0], y[1] + h * k[1]};
+    };
+    Angle y{std::atan2(0.3, 1), 0};
+    constexpr double h = 0.0003;
+    for (int i = 0; i < 1000; ++i) {
+      const Angle a = rate(y), b = rate(along(y, h / 2, a)), c = rate(along(y, h / 2, b)),
+                  d = rate(along(y, h, c));
+      for (std::size_t k = 0; k < 2; ++k) y[k] += h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
+    }
+    return turn * Vec3(l * std::sin(y[0]), 0, l * std::cos(y[0]));
+  }
+  // What a run with these settings is off by at the end.
+  double error(const std::vector<std::string>& set = {}) const {
+    const Simulation run = testing::run_scene(scene(), set);
+    INFO(run.message);
+    REQUIRE(run.status == RunStatus::completed);
+    const VectorXd q = testing::end_positions(run);
+    return (q.segment<3>(6) - q.head<3>() - end()).norm();
+  }
+};
+
+Mat3 some_turn(int i) {
+  return Eigen::AngleAxisd(0.7 + i, Vec3(1, 0.4 - i, 0.2 + 0.3 * i).normalized()).toRotationMatrix();
+}
+
+TEST_CASE("a linkage in a turned plane moves as its one freedom says, whatever digits its positions have") {
+  // The steps' own error is 1e-8, and a position that is off moves the rest by some ten times as much.
+  for (const bool collinear : {false, true})
+    for (const int decimals : {16, 14, 13, 12, 11, 10})
+      for (int i = 0; i < 3; ++i) {
+        INFO((collinear ? "collinear, " : "coplanar, ") << decimals << " decimals, turn " << i);
+        CHECK(Parallelogram{collinear, false, some_turn(i), Vec3::Zero(), decimals}.error() <=
+              2e-8 + 10 * std::pow(10, -decimals));
+      }
+}
+
+TEST_CASE("a linkage far from the origin moves as near it") {
+  // Rounding leaves 1e-16 of the distance in each coordinate.
+  for (const double far : {1e2, 1e3, 1e4, 1e5})
+    for (int i = 0; i < 3; ++i)
+      for (const bool more : {false, true}) {
+        const Vec3 shift = far * Vec3(1.1, 2.3, -1);
+        INFO(far << " m, turn " << i << (more ? ", collinear, third crank" : ", coplanar"));
+        CHECK(Parallelogram{more, more, some_turn(i), shift}.error() <= 2e-8 + 1e-13 * far);
+      }
+  for (const char* method : {"rk4", "rk4_projected"})
+    CHECK(Parallelogram{true, true, some_turn(0), 1e5 * Vec3(1.1, 2.3, -1)}.error(
+              {std::string("solver.method=") + method}) <= 1e-6);
 }
 
 }  // namespace row_rounding_test
