@@ -94,8 +94,15 @@ double misfit_of_rows(const System& system, const ConstVec& q) {
 std::string misfit_warning(const System& system, const ConstVec& q) {
   const double misfit = misfit_of_rows(system, q);
   if (misfit < worth_a_word) return "";
-  return "constraints of this structure follow from one another only to " + rounded(misfit, 2) +
-         " of their size: its positions have too few digits (unless they are next to a singular pose on "
+  const std::string found = "constraints of this structure follow from one another only to " +
+                            rounded(misfit, 2) + " of their size";
+  if (misfit < rounding_of_rows(q))
+    return found +
+           ", which is what rounding its positions leaves so far from the origin; the motion is no better "
+           "than "
+           "that and worse over time: move the structure near the origin";
+  return found +
+         ": its positions have too few digits (unless they are next to a singular pose on "
          "purpose), and the motion is no better than they are and worse over time; give them all 16 digits, "
          "or solver.model = \"path\"";
 }

@@ -205,13 +205,16 @@ class Checker {
 
   // A structure that moves has rows that depend on each other exactly; positions with few digits leave a
   // remainder. What is rigid by its make is farther from such a pose.
-  static std::string too_few_digits(double smallest) {
+  std::string too_few_digits(double smallest) const {
     constexpr double by_rounding = 1e-3;
     if (!(smallest < by_rounding)) return "";
     std::ostringstream text;
     text << std::setprecision(2) << "they nearly leave one motion (all but " << smallest
-         << " of their size): if it is meant to move, give its positions all 16 digits (an expression, "
-            "\"=...\", has them); else ";
+         << " of their size): if it is meant to move, "
+         << (smallest < rounding_of_rows(q_)
+                 ? "move it near the origin, from which it stands too far for the digits that a number has"
+                 : "give its positions all 16 digits (an expression, \"=...\", has them)")
+         << "; else ";
     return text.str();
   }
 

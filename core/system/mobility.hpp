@@ -14,6 +14,9 @@ namespace unfurl {
 // structure leaves is its distance from a singular pose, 3e-3 for the folded ring of six units and 1e-7 for
 // one of a thousand.
 inline constexpr double dependent_row = 1e-11;
+// What rounding the coordinates leaves of it where the structure stands far from the origin, give or take:
+// the largest coordinate by the longest side of the box that holds the nodes.
+double rounding_of_rows(const ConstVec& q);
 
 struct Mobility {
   Index coordinates = 0;               // 3 n
