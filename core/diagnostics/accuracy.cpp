@@ -324,6 +324,38 @@ std::string words_of_large_stretch(const Trajectory& trajectory) {
   return text.str();
 }
 
+// The turn of a rod within a step [rad] from which on a method is a hundredth of its length off, or more,
+// with every revolution; of a rod that turns freely.
+double followed_turn(const SolverOptions& options) {
+  if (options.method == "generalized_alpha") return 0.1;
+  if (options.method != "dvm") return 0.5;
+  return options.stages < 3 ? 0.1 : options.stages == 3 ? 0.9 : options.stages == 4 ? 2.0 : 2.5;
+}
+
+// The energy does not see such an error: a rod that turns freely keeps it at any step.
+std::string words_of_turns(const Simulation& run) {
+  const SolverOptions& options = run.options;
+  if (options.adaptive || options.tolerance > 0 || run.solved_as.name == "path") return "";
+  double most = 0, at = 0;
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
+    const VectorXd v = run.trajectory.node_velocities(i);
+    for (const Rod& rod : run.trajectory.structure().rods)
+      if (const double rate = (v.segment<3>(3 * rod.b) - v.segment<3>(3 * rod.a)).norm() / rod.length;
+          rate > most)
+        most = rate, at = run.trajectory.time(i);
+  }
+  const double followed = followed_turn(options);
+  if (!(most * options.step > followed)) return "";
+  std::ostringstream text;
+  text.precision(3);
+  text << "rods turn by up to " << most * options.step << " rad within a step of " << options.step
+       << " s (t = " << at
+       << " s), which the steps do not follow, however well the energy is kept: take solver.step <= "
+       << followed / most << (options.method == "dvm" ? ", or more solver.stages" : "")
+       << ", or solver.adaptive = true";
+  return text.str();
+}
+
 std::string words_of_interruption(const Diagnostics& d) {
   if (d.left_open >= d.t.size())
     return "interrupted before the run was judged: series, rod forces and measures are empty";
@@ -379,6 +411,9 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
          << (dvm ? "" : ", or method dvm, which holds them");
     warnings.push_back(text.str());
   }
+  if (warnings.empty())  // else it is the same cause, and the same cure
+    if (std::string text_of_turns = words_of_turns(run); !text_of_turns.empty())
+      warnings.push_back(std::move(text_of_turns));
   if (std::string text_of_forces = without_bound(run.trajectory); !text_of_forces.empty())
     warnings.push_back(std::move(text_of_forces));
   if (Rise rise = rise_on_the_way(run, d); !rise.text.empty()) warnings.push_back(std::move(rise.text));

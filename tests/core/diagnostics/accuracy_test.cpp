@@ -2,6 +2,9 @@
 // A run that went wrong says so, and what is known to be wrong is no result.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/scene/build.hpp"
@@ -190,6 +193,40 @@ TEST_CASE("a balance that rounding alone can put off is said to check nothing, a
   const auto far = warnings("3e15");
   REQUIRE(far.size() == 1);
   CHECK(far[0].find("rounding alone") != std::string::npos);
+}
+
+TEST_CASE("steps in which rods turn farther than a method follows are told") {
+  // A bar turns freely about its end at 1 rad/s, twenty steps: its energy is kept at any step, its angle is
+  // t.
+  const auto turned = [](double h, int stages, const std::string& method) {
+    const std::string step = std::to_string(h), end = std::to_string(20 * h);
+    const Judged j = judged(read_scene_text(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true},"
+        "{name = 'B', position = [1, 0, 0], mass = 1, velocity = [0, 1, 0]}]\n"
+        "rods = [{nodes = ['A', 'B'], mass = 1}]\n[solver]\nmethod = '" +
+            method + "'\nstages = " + std::to_string(stages) + "\nstep = " + step + "\nend_time = " + end +
+            "\n",
+        "bar.toml", {}));
+    const VectorXd q = j.run.trajectory.node_positions(j.run.trajectory.size() - 1);
+    const double t = j.run.trajectory.end_time();
+    const double off = std::abs(std::remainder(std::atan2(q[4], q[3]) - t, 2 * std::numbers::pi));
+    const bool warned = !accuracy_warnings(j.run, j.d).empty();
+    return std::pair(warned, off / (t / (2 * std::numbers::pi)));  // off with every revolution
+  };
+  const auto check = [&](int stages, const std::string& method, double fine, double coarse) {
+    INFO(method << ", " << stages << " stages");
+    const auto small = turned(fine, stages, method), large = turned(coarse, stages, method);
+    CHECK(!small.first);
+    CHECK(small.second < 0.01);
+    CHECK(large.first);
+    CHECK(large.second > 0.003);
+  };
+  check(2, "dvm", 0.08, 0.2);
+  check(3, "dvm", 0.7, 1.0);
+  check(4, "dvm", 1.5, 2.2);
+  check(5, "dvm", 2.0, 3.0);
+  check(3, "rk4", 0.3, 0.6);
+  check(3, "generalized_alpha", 0.09, 0.15);
 }
 
 TEST_CASE("constraints that are lost end a run") {
