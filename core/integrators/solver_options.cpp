@@ -41,10 +41,11 @@ const ParamBinding<O>& keys() {
            positive_param("baumgarte", "1/s", 0,
                           "rate at which constraint errors decay; stable below 2.7 / step (rk4_baumgarte)")),
        &O::baumgarte},
-      {only_with("method", {"generalized_alpha"},
-                 real_param("rho_inf", "", 0, 0.0, 1.0,
-                            "what is left of the fastest oscillations after a step; 1 damps nothing "
-                            "(generalized_alpha)")),
+      {only_with(
+           "method", {"generalized_alpha"},
+           real_param("rho_inf", "", 0, 0.0, 1.0,
+                      "what is left of the fastest oscillations after a step; 1 damps nothing, forces of "
+                      "rods need 0.95 or less (generalized_alpha)")),
        &O::rho_inf},
       {positive_param("step", "s", 0, "time step h"), &O::step},
       {boolean_param("adaptive", false,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A run that went wrong says so, and what is known to be wrong is no result.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -227,6 +228,25 @@ TEST_CASE("steps in which rods turn farther than a method follows are told") {
   check(5, "dvm", 2.0, 3.0);
   check(3, "rk4", 0.3, 0.6);
   check(3, "generalized_alpha", 0.09, 0.15);
+}
+
+TEST_CASE("generalized-alpha that damps nothing is told to damp and it helps") {
+  // The double pendulum's energy is constant; at rho_inf = 1 it is lost however short the steps.
+  const auto balance = [](double rho_inf, double h, std::string& told) {
+    SolverOptions options = dvm_options(3, h, 6.0);
+    options.method = "generalized_alpha", options.rho_inf = rho_inf;
+    const Simulation run = simulate(make_model(double_pendulum()), options);
+    const Diagnostics d = diagnose(run);
+    told.clear();
+    for (const std::string& warning : accuracy_warnings(run, d)) told += warning;
+    double most = 0;
+    for (const double x : d.at("energy_balance_J").values) most = std::max(most, std::abs(x));
+    return most;
+  };
+  std::string undamped, damped;
+  CHECK(balance(1.0, 0.002, undamped) > 100 * balance(0.95, 0.002, damped));
+  CHECK(undamped.find("solver.rho_inf <= 0.95") != std::string::npos);
+  CHECK(damped.find("rho_inf") == std::string::npos);
 }
 
 TEST_CASE("constraints that are lost end a run") {
