@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/diagnostics/motion_samples.hpp"
 
+#include <memory>
+
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/peaks.hpp"
 
@@ -43,6 +45,40 @@ const Diagnostics& MotionSamples::of(const Simulation& piece, bool energies) {
   const auto known = found_.find({&piece, energies});
   return known != found_.end() ? known->second
                                : found_.emplace(std::pair(&piece, energies), look()).first->second;
+}
+
+bool of_the_state(const Series& column) {
+  if (column.unit == "J") return column.name == "kinetic_energy_J" || column.name == "potential_energy_J";
+  return !column.name.starts_with("constraint_") && !column.name.ends_with("_unique") &&
+         column.name != "step_s" && column.name != "newton_iterations";
+}
+
+const Simulation& inside_step(const Simulation& run, std::size_t k,
+                              std::optional<MotionSamples::Sample>& made) {
+  const Trajectory& states = run.trajectory;
+  std::vector<double> times;
+  for (const double u : {0.25, 0.5, 0.75})
+    times.push_back(states.time(k) + u * (states.time(k + 1) - states.time(k)));
+  MotionSamples* const samples = remembered_samples();
+  MotionSamples::Key key(&run, k, true, times);
+  if (const MotionSamples::Sample* known = samples ? samples->find(key) : nullptr) return known->piece;
+  made.emplace(MotionSamples::Sample{
+      {.trajectory = Trajectory({std::shared_ptr<const Model>(), &states.model(k)}), .options = run.options},
+      {}});
+  for (const double t : times) made->piece.trajectory.append(states.state_at(t), StepReport{});
+  return samples ? samples->keep(std::move(key), std::move(*made)).piece : made->piece;
+}
+
+void MotionSamples::move_onto_constraints(const Model& model, State& state) {
+  if (projected_ != &model) projector_.emplace(model.system);
+  projected_ = &model;
+  (*projector_)(state);
+}
+
+void move_onto_constraints(const Model& model, State& state) {
+  if (MotionSamples* const samples = remembered_samples())
+    return samples->move_onto_constraints(model, state);
+  project(model.system, state);
 }
 
 const Diagnostics& judged_piece(const Simulation& piece, bool energies, Diagnostics& made) {

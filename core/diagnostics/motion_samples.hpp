@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
+#include "core/simulate/initial_state.hpp"
 #include "core/simulate/simulation.hpp"
 
 namespace unfurl {
@@ -30,6 +32,11 @@ class MotionSamples {
   const Sample& keep(Key key, Sample sample);
   // diagnose_states(), or diagnose_energies(), of a piece.
   const Diagnostics& of(const Simulation& piece, bool energies);
+  // project(), of one model after another.
+  void move_onto_constraints(const Model& model, State& state);
+
+  // What is known of the motion around a state of a run.
+  std::map<std::pair<const Simulation*, std::size_t>, std::shared_ptr<const void>> around;
 
  private:
   std::map<Key, Sample> kept_;
@@ -38,10 +45,18 @@ class MotionSamples {
   std::size_t numbers_ = 0;     // in them
   std::optional<Sample> last_;  // for which there is no room
   Diagnostics last_found_;
+  const Model* projected_ = nullptr;
+  std::optional<Projector> projector_;  // of that
 };
 
 // Of the RememberedExtremes of this thread; null: there is none.
 MotionSamples* remembered_samples();
+void move_onto_constraints(const Model& model, State& state);
+// Whether a column is a function of the state alone, which samples then tell.
+bool of_the_state(const Series& column);
+// The run at a quarter, the middle and three quarters of the step from state k on: remembered, or `made`.
+const Simulation& inside_step(const Simulation& run, std::size_t k,
+                              std::optional<MotionSamples::Sample>& made);
 // MotionSamples::of() of those, or `made` where there are none.
 const Diagnostics& judged_piece(const Simulation& piece, bool energies, Diagnostics& made);
 

@@ -20,7 +20,6 @@
 #include "core/integrators/index1.hpp"
 #include "core/math/largest.hpp"
 #include "core/simulate/dense_output.hpp"
-#include "core/simulate/initial_state.hpp"
 #include "core/structure/time_edges.hpp"
 
 namespace unfurl {
@@ -120,7 +119,7 @@ class Neighbourhood {
       const bool singular = t >= end() && run_.trajectory.report(last_).singular_event;
       moves.push_back(!singular && (phi.size() == 0 ||
                                     phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() <= good_constraint));
-      if (moves.back() && phi.size() > 0) project(there, state);
+      if (moves.back() && phi.size() > 0) move_onto_constraints(model, state);
       piece.trajectory.append(std::move(state), StepReport{});
     }
     return {std::move(piece), std::move(moves)};
@@ -166,10 +165,8 @@ class Neighbourhood {
     double largest = std::max(size(a.w), size(end.w)), sum = 0;
     for (std::size_t j = 0; j < N; ++j) {
       State s = j + 1 == N ? end : state_in(k, a.t + (end.t - a.t) * static_cast<double>(j) / (N - 1));
-      if (j > 0 && j + 1 < N && system.all_constraints() > 0) {
-        system.follow(s);
-        project(system, s);
-      }
+      if (j > 0 && j + 1 < N && system.all_constraints() > 0)
+        move_onto_constraints(run_.trajectory.model(k), s);
       if (!accelerate(system, index1, s, false, accel)) return false;
       gained += weights[j] * accel;
       sum += weights[j];
@@ -205,6 +202,13 @@ class Neighbourhood {
   std::vector<VectorXd> accelerations_;  // at state from_ and those after it; empty where there is none
   std::vector<std::size_t> by_steps_;    // of the steps from these states the quintic is not good enough
 };
+
+std::shared_ptr<const Neighbourhood> neighbourhood(const Simulation& run, std::size_t i) {
+  MotionSamples* const samples = remembered_samples();
+  std::shared_ptr<const void> made, &known = samples ? samples->around[{&run, i}] : made;
+  if (!known) known = std::make_shared<const Neighbourhood>(run, i);
+  return std::static_pointer_cast<const Neighbourhood>(known);
+}
 
 // States around which the motion may top `best`: local maxima whose parabola reaches it, and those beside a
 // corner that does, of each the highest first. What happened between two events within one step has no state
@@ -257,12 +261,9 @@ std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& va
   if (steps.size() > most_long || (t.size() > 2 * most_long && few * steps.size() < t.size())) return {};
   std::vector<std::pair<double, std::size_t>> found;
   for (const std::size_t k : steps) {
-    Simulation piece{.trajectory = Trajectory({std::shared_ptr<const Model>(), &t.model(k)}),
-                     .options = run.options};
-    for (const double u : {0.25, 0.5, 0.75})
-      piece.trajectory.append(t.state_at(t.time(k) + u * (t.time(k + 1) - t.time(k))), StepReport{});
+    std::optional<MotionSamples::Sample> made;
     double most = -std::numeric_limits<double>::infinity();
-    for (const double x : values(piece)) most = std::max(most, x);  // not a NaN
+    for (const double x : values(inside_step(run, k, made))) most = std::max(most, x);  // not a NaN
     found.push_back({most, k});
   }
   std::ranges::stable_sort(found, std::greater(), [](const auto& f) { return f.first; });
@@ -359,14 +360,7 @@ PeakInMotion without_bound(const Simulation& run, const std::vector<double>& at_
   return found;
 }
 
-// Whether a column is a function of the state alone.
-bool of_the_state(const Series& column) {
-  if (column.unit == "J") return column.name == "kinetic_energy_J" || column.name == "potential_energy_J";
-  return !column.name.starts_with("constraint_") && !column.name.ends_with("_unique") &&
-         column.name != "step_s" && column.name != "newton_iterations";
-}
-
-// Or a stress, or a share of what a rod bears.
+// Whether a column is a force, a stress, or a share of what a rod bears.
 bool is_force(const Series& column) {
   return column.unit == "N" || column.unit == "N m" || column.unit == "Pa" ||
          column.name.ends_with("_ratio_max");
@@ -426,9 +420,9 @@ PeakInMotion top_of_motion(const Simulation& run, const std::vector<double>& at_
     for (const std::size_t i : more)
       if (std::ranges::find(around_these, i) == around_these.end()) around_these.push_back(i);
   for (const std::size_t i : around_these) {
-    const Neighbourhood around(run, i);
-    if (around.empty()) continue;
-    PeakInMotion found = closer(around, values, best);
+    const std::shared_ptr<const Neighbourhood> around = neighbourhood(run, i);
+    if (around->empty()) continue;
+    PeakInMotion found = closer(*around, values, best);
     if (found.value > best.value) found = by_states(run, at_states, found);
     if (found.value > best.value) best = found;
   }

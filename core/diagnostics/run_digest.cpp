@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -22,13 +24,22 @@
 namespace unfurl {
 namespace {
 
-// Columns whose largest and smallest values a summary looks for within steps.
-bool looked_for(std::string_view name) {
-  for (const std::string_view known : {"axial_force_max_N", "axial_force_min_N", "axial_stress_max_Pa",
-                                       "axial_stress_min_Pa", "stress_ratio_max", "buckling_ratio_max",
-                                       "latch_force_max_N", "latch_torque_max_N_m", "kinetic_energy_J"})
-    if (name == known) return true;
+// Whether a summary looks for a column's largest or smallest value within steps.
+bool looked_for(std::string_view name, bool largest) {
+  for (const std::string_view known :
+       {"axial_force_max_N", "axial_stress_max_Pa", "stress_ratio_max", "buckling_ratio_max",
+        "latch_force_max_N", "latch_torque_max_N_m", "kinetic_energy_J"})
+    if (name == known) return largest;
+  if (name == "axial_force_min_N" || name == "axial_stress_min_Pa") return !largest;
   return name.ends_with(".torque_N_m") || name.ends_with(".force_N") || name.ends_with(".power_W");
+}
+
+// Whether sign times values may go beyond the most that is known where they are looked at more closely: they
+// come within their own spread of it.
+bool may_top(std::span<const double> values, double sign, double most) {
+  double low = std::numeric_limits<double>::quiet_NaN(), high = low;
+  for (const double x : values) low = std::fmin(low, sign * x), high = std::fmax(high, sign * x);
+  return high + (high - low) > most;
 }
 
 // Columns that count what happened since the start.
@@ -40,7 +51,7 @@ bool counts(std::string_view name) {
 }
 
 // The row of the largest sign * value; the first of equal ones. values.size() where there is none.
-std::size_t row_of_largest(const std::vector<double>& values, double sign) {
+std::size_t row_of_largest(std::span<const double> values, double sign) {
   std::size_t best = values.size();
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isnan(values[i]) && (best == values.size() || sign * values[i] > sign * values[best])) best = i;
@@ -81,12 +92,16 @@ void add_rods(const Structure& structure, const Diagnostics& d, std::set<std::si
 
 // The largest tension and compression of the motion, and the rows that are to hold them: those of the states
 // with the largest.
-std::vector<std::pair<std::size_t, PeakForce>> peaks_of_rods(const Simulation& run, const Diagnostics& d) {
+template <typename Worth>
+std::vector<std::pair<std::size_t, PeakForce>> peaks_of_rods(const Simulation& run, const Diagnostics& d,
+                                                             const Worth& worth_a_look) {
   std::vector<std::pair<std::size_t, PeakForce>> out;
   for (const auto& [pull, column, sign] : {std::tuple{Pull::tension, "axial_force_max_N", 1.0},
                                            {Pull::compression, "axial_force_min_N", -1.0}}) {
-    const std::size_t row = row_of_largest(d.at(column).values, sign);
-    const PeakForce peak = peak_rod_force(run, d, pull);
+    const Series& forces = d.at(column);
+    const std::size_t row = row_of_largest(forces.values, sign);
+    const PeakForce peak =
+        worth_a_look(forces, sign) ? peak_rod_force(run, d, pull) : peak_rod_force(d, pull);
     if (row < d.t.size() && peak.rod >= 0) out.emplace_back(row, peak);
   }
   return out;
@@ -171,20 +186,19 @@ bool RunDigest::look_at_seam(const Simulation& window, const Diagnostics& d, std
                              std::size_t end) {
   const std::size_t begin = first - std::min<std::size_t>(first, 2);
   const Simulation seam{.trajectory = window.trajectory.part(begin, end, options_), .options = options_};
+  const RememberedExtremes once;
   bool found = false;
   for (std::size_t c = 0; c < d.columns.size(); ++c) {
-    if (!looked_for(d.columns[c].name)) continue;
     Diagnostics rows;
     rows.columns.push_back(d.columns[c]);
     std::vector<double>& x = rows.columns.back().values;
     x.erase(x.begin() + static_cast<std::ptrdiff_t>(end), x.end());
     x.erase(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(begin));
-    const auto [low, high] = std::minmax_element(x.begin(), x.end());
     for (const double sign : {1.0, -1.0}) {
+      if (!looked_for(d.columns[c].name, sign > 0)) continue;
       const std::vector<double>& all = all_.diagnostics.columns[c].values;
       const std::size_t row = row_of_largest(all, sign);
-      if (row == all.size() || !(std::max(sign * *low, sign * *high) + *high - *low >= sign * all[row]))
-        continue;
+      if (row == all.size() || !may_top(x, sign, sign * all[row])) continue;
       const double top = sign > 0 ? largest_of_column(seam, rows, d.columns[c].name)
                                   : smallest_of_column(seam, rows, d.columns[c].name);
       if (!(sign * top > sign * all[row])) continue;
@@ -261,6 +275,20 @@ Digest RunDigest::with_rows(const Digest& before, const Simulation& window, cons
   return out;
 }
 
+// Whether a look within the steps of the last window may find more of a column than what is known.
+bool RunDigest::worth_a_look(const Digest& all, const Series& column, double sign) const {
+  const std::vector<double>& t = all.diagnostics.t;
+  const std::size_t known = std::min(kept_.diagnostics.t.size(), t.size());
+  const std::span<const double> x(column.values);
+  const std::size_t row = row_of_largest(x.first(known), sign);
+  return row == known || may_top(x.subspan(known), sign, sign * x[row]) ||
+         std::ranges::any_of(
+             all.run.events,
+             [&](const Event& event) { return event.kind == "singular_pose" && event.t >= t[known - 1]; }) ||
+         (column.name.starts_with("axial_force_m") &&
+          !rod_humps(all.run.trajectory, all.diagnostics, sign).empty());
+}
+
 // In the coordinates of the model at the start; nothing is looked for around these states any more. What was
 // found beside the last state stands at the one before: the last is the end of what a digest says.
 Digest RunDigest::thinned(const Digest& all) const {
@@ -279,7 +307,8 @@ Digest RunDigest::thinned(const Digest& all) const {
     for (const bool largest : {true, false}) {
       std::size_t row = row_of_largest(column.values, largest ? 1.0 : -1.0);
       double value = row < column.values.size() ? column.values[row] : 0.0;
-      if (row < column.values.size() && looked_for(column.name)) {
+      if (row < column.values.size() && looked_for(column.name, largest) &&
+          worth_a_look(all, column, largest ? 1.0 : -1.0)) {
         const double x = largest ? largest_of_column(all.run, d, column.name)
                                  : smallest_of_column(all.run, d, column.name);
         if (std::isfinite(x)) value = x;
@@ -287,7 +316,8 @@ Digest RunDigest::thinned(const Digest& all) const {
       if (row < column.values.size()) row = row_for(row, value == column.values[row]);
       found[largest ? 0 : 1].emplace_back(row, value);
     }
-  auto peaks = peaks_of_rods(all.run, d);
+  auto peaks = peaks_of_rods(
+      all.run, d, [&](const Series& forces, double sign) { return worth_a_look(all, forces, sign); });
   for (auto& [row, peak] : peaks)
     row = row_for(row, peak.force_N == d.axial_force(static_cast<Index>(row), peak.rod));
   for (std::size_t i = 0; i < trajectory.size(); ++i)

@@ -47,6 +47,7 @@ class RunDigest {
                    std::size_t last) const;
   bool look_at_seam(const Simulation& window, const Diagnostics& d, std::size_t first, std::size_t end);
   Digest thinned(const Digest& all) const;
+  bool worth_a_look(const Digest& all, const Series& column, double sign) const;
   void count_on(Diagnostics& d, std::size_t first);
   void add_events(const Simulation& window, double until);
   void note_rise(const Digest& rows);

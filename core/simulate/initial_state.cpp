@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "core/integrators/index1.hpp"
-#include "core/math/saddle_solver.hpp"
 #include "core/structure/node_positions.hpp"
 
 namespace unfurl {
@@ -18,25 +17,31 @@ constexpr double weak_modes_left_alone = 1e-6;
 
 }  // namespace
 
-void project(const System& any, State& state) {
-  const System system = any.at(state);
-  SparseRows G = system.jacobian_pattern();
-  std::vector<double> scratch;
-  SaddleSolver saddle(system.mass(), G, 1, weak_modes_left_alone);
-  VectorXd q(system.coordinates()), phi(system.constraints()), x(system.solved_coordinates()), y(phi.size());
-  VectorXd rate(phi.size());
+Projector::Projector(const System& system)
+    : system_(system),
+      jacobian_(system.jacobian_pattern()),
+      saddle_(system.mass(), jacobian_, 1, weak_modes_left_alone) {}
+
+void Projector::operator()(State& state) {
+  system_.follow(state);
+  VectorXd q(system_.coordinates()), phi(system_.constraints()), x(system_.solved_coordinates());
+  VectorXd y(phi.size()), rate(phi.size());
   const VectorXd no_force = VectorXd::Zero(x.size());
   for (int it = 0; it < 2; ++it) {
-    system.expand(state.z, q);
-    system.constraint(state.t, q, phi);
-    system.jacobian(q, G, scratch);
-    if (!saddle.factorise(G)) return;
-    saddle.solve(no_force, -phi, x, y, 0);
+    system_.expand(state.z, q);
+    system_.constraint(state.t, q, phi);
+    system_.jacobian(q, jacobian_, scratch_);
+    if (!saddle_.factorise(jacobian_)) return;
+    saddle_.solve(no_force, -phi, x, y, 0);
     state.z += x;
   }
-  const VectorXd p = system.mass() * state.w;
-  system.target_rate(state.t, rate);
-  saddle.solve(p, rate, state.w, y);
+  const VectorXd p = system_.mass() * state.w;
+  system_.target_rate(state.t, rate);
+  saddle_.solve(p, rate, state.w, y);
+}
+
+void project(const System& system, State& state) {
+  Projector{system}(state);
 }
 
 VectorXd fitted_rates(const System& system, double t, const ConstVec& q, const ConstVec& v) {

@@ -3,7 +3,10 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "core/math/saddle_solver.hpp"
+#include "core/math/types.hpp"
 #include "core/structure/structure.hpp"
 #include "core/system/state.hpp"
 #include "core/system/system.hpp"
@@ -32,5 +35,18 @@ VectorXd fitted_rates(const System& system, double t, const ConstVec& q, const C
 // Move z to the nearest point of Phi = 0 and w to G w = 0, both in the mass metric, leaving directions
 // without rank alone. For states that are nearly right already: one or two Newton steps.
 void project(const System& system, State& state);
+
+// The same for many states of one model.
+class Projector {
+ public:
+  explicit Projector(const System& system);
+  void operator()(State& state);
+
+ private:
+  System system_;
+  SparseRows jacobian_;
+  SaddleSolver saddle_;
+  std::vector<double> scratch_;
+};
 
 }  // namespace unfurl

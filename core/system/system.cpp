@@ -250,23 +250,6 @@ System::System(const Structure& structure, bool eliminate_linear) {
   jacobian(data_->start, data_->pattern, scratch);  // tells which entries are large
 }
 
-System System::loaded(const Structure& structure) const {
-  System out = *this;
-  out.set_loads(structure);
-  return out;
-}
-bool System::take_loads_of(const System& other) {
-  if (data_ != other.data_) return false;
-  constant_ = other.constant_;
-  return true;
-}
-void System::set_loads(const Structure& structure) {
-  VectorXd loads = VectorXd::Zero(data_->coordinates);
-  for (const Load& load : structure.loads) loads.segment<3>(3 * load.node) += load.force;
-  VectorXd force = data_->unloaded_force + loads;
-  constant_ = std::make_shared<const Constant>(Constant{std::move(loads), std::move(force)});
-}
-
 System::~System() = default;
 System::System(const System&) = default;
 System::System(System&&) noexcept = default;

@@ -33,6 +33,23 @@ double System::potential_energy(const ConstVec& q) const {
   for (const auto& block : data_->forces) sum += block->potential(moment(since_), q.data());
   return sum;
 }
+System System::loaded(const Structure& structure) const {
+  System out = *this;
+  out.set_loads(structure);
+  return out;
+}
+bool System::take_loads_of(const System& other) {
+  if (data_ != other.data_) return false;
+  constant_ = other.constant_;
+  return true;
+}
+void System::set_loads(const Structure& structure) {
+  VectorXd loads = VectorXd::Zero(data_->coordinates);
+  for (const Load& load : structure.loads) loads.segment<3>(3 * load.node) += load.force;
+  VectorXd force = data_->unloaded_force + loads;
+  constant_ = std::make_shared<const Constant>(Constant{std::move(loads), std::move(force)});
+}
+
 double System::load_work(const ConstVec& q) const {
   return constant_->loads.dot(q - data_->start);
 }
