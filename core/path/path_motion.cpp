@@ -41,13 +41,17 @@ double PathLaw::known_place(const PathPiece& piece, double x) const {
   return x;
 }
 
-void PathLaw::pull_where_taut(double s, double v) {
+bool PathLaw::pull_where_taut(double s, double v) {
+  constexpr double rounding = 1e-12;
+  bool clear = true;
   for (std::size_t k = 0; k < pulling_.size(); ++k) {
     const PathForces::Cable& cable = forces_.cables()[k];
     const ValueAndSlope length = table_->at(cable.measure, s);
-    const double e = length.value - cable.rest;
-    pulling_[k] = e > 0 && cable.stiffness * e + cable.damping * length.slope * v > 0;
+    const double e = length.value - cable.rest, damper = cable.damping * length.slope * v;
+    pulling_[k] = e > 0 && cable.stiffness * e + damper > 0;
+    clear = clear && (damper <= 0 || std::abs(e) > rounding * std::abs(length.value));
   }
+  return clear;
 }
 
 ScalarLaw::Value PathLaw::at(double s, double v, double t) const {

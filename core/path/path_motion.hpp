@@ -22,7 +22,9 @@ class PathLaw : public ScalarLaw {
   PathTable& table() const { return *table_; }
   void tabulate();  // once every measure has been added
   void set_pulling(std::size_t cable, bool pulls) { pulling_[cable] = pulls; }
-  void pull_where_taut(double s, double v);  // all, as the equations have them that know both of their modes
+  // All, as the equations have them that know both of their modes. False where rounding decides, at the
+  // length from which on a damper pulls.
+  bool pull_where_taut(double s, double v);
   // The sense in which friction slips, 0: it does not.
   void set_slip(std::size_t friction, int slip) { slips_[friction] = slip; }
   // The most that friction can hold, along the path.

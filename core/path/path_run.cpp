@@ -26,6 +26,7 @@ namespace {
 constexpr long most_switches = 100;  // at one time
 // Two solutions of one equation, next to a pose where it is nearly singular.
 constexpr double same_equations = 1e-7, rounded_sum = 1e-12;
+constexpr double beside = 1e-8;  // of a piece: there no rounding decides, and all else is as good as the same
 
 class PathRun {
  public:
@@ -137,9 +138,9 @@ class PathRun {
 
   // At x in [-1, 1] of a piece, at the speed v; forces that balance leave rounding of their sizes.
   void compare_equations(const PathPiece& piece, double x, double v) {
-    const double s = 0.5 * (piece.a + piece.b) + 0.5 * x * (piece.b - piece.a);
+    double s = 0.5 * (piece.a + piece.b) + 0.5 * x * (piece.b - piece.a);
     law_->look_from(s);
-    law_->pull_where_taut(s, v);
+    if (!law_->pull_where_taut(s, v)) law_->pull_where_taut(s += beside * (piece.b - piece.a), v);
     const State state = state_at(0.0, s, v);
     const System followed = base_->system.at(last());
     Index1 index1(followed);
