@@ -12,6 +12,7 @@
 #include "core/forces/pin_loads.hpp"
 #include "core/math/determined_rows.hpp"
 #include "core/scene/element_members.hpp"
+#include "core/scene/made_lengths.hpp"
 #include "core/scene/size_limits.hpp"
 #include "core/structure/measure.hpp"
 #include "core/structure/node_positions.hpp"
@@ -115,7 +116,7 @@ std::vector<std::string> place_nodes(const Scene& scene, Structure& structure) {
     fit_lengths(placed, scene.solver.eliminate_linear);
     assemble_elastic(placed, scene.solver.eliminate_linear);
   } catch (const StructureError& error) {
-    refuse(scene, error);
+    refuse(scene, of_made_lengths(scene, error));
   }
   for (std::size_t i = 0; i < structure.nodes.size(); ++i)
     structure.nodes[i].position = placed.nodes[i].position;

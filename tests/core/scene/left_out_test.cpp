@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Entries that are switched off, and what expressions leave of whole numbers.
+// Entries that are switched off, expressions of whole numbers, errors of length that nothing can take up.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -37,6 +37,16 @@ TEST_CASE("a whole number may be an expression that is one but for rounding") {
   }
   CHECK(testing::error_of("[structure]\nkind = 'hoop'\nunits = '=6.001'\n").find("whole number") !=
         std::string::npos);
+}
+
+// Six units of rods have 78 rows of rank 71: no pose has lengths of their own, whatever the error's size.
+TEST_CASE("errors of length that rigid rods cannot take up are named by their key") {
+  for (const char* size : {"1e-11", "1e-9", "1e-3"}) {
+    const std::string said =
+        testing::error_of(std::string("[structure]\nkind = 'hoop'\nlength_error = ") + size + "\n");
+    CHECK_THAT(said, Catch::Contains("structure.length_error: ") &&
+                         Catch::Contains("rod_model = \"elastic\"") && !Catch::Contains("rods["));
+  }
 }
 
 }  // namespace left_out_test
