@@ -51,8 +51,7 @@ std::vector<double> DrivenTables::points_within(double from, double to) const {
     if (first != last && !is_followed(table.f, from, to)) out.insert(out.end(), first, last);
   }
   std::ranges::sort(out);
-  const auto same = std::ranges::unique(out);
-  out.erase(same.begin(), same.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
