@@ -8,7 +8,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -213,6 +213,7 @@ class SteppedScene {
   bool step() {
     const py::gil_scoped_release release;
     const std::lock_guard lock(*use_);
+    push();
     return goes_on_ = stepper_.step();
   }
   bool advance_to(double t) {
@@ -220,8 +221,8 @@ class SteppedScene {
     Asker asker;
     {
       const py::gil_scoped_release release;
-      const std::lock_guard lock(*use_);
-      goes_on_ = stepper_.advance_to(t, [&asker] { return asker(); });
+      while (advance_for_a_while(t) && !asker()) {
+      }
     }
     asker.raise();
     return goes_on_;
@@ -283,31 +284,47 @@ class SteppedScene {
     const int of = node(key);
     const py::gil_scoped_release release;
     const std::lock_guard lock(*use_);
-    stepper_.set_force(of, force);
-    forces_[of] = force;
+    forces_.try_emplace(of, Vec3::Zero()).first->second = force;
+    push();
   }
-  Vec3 force(const py::object& key) const {
-    return alone([this, of = node(key)] {
-      const auto found = forces_.find(of);
-      return found == forces_.end() ? Vec3(Vec3::Zero()) : found->second;
-    });
+  // What acts from the next step on, also where it is written into.
+  Vec3& force(const py::object& key) {
+    return *alone([this, of = node(key)] { return &forces_.try_emplace(of, Vec3::Zero()).first->second; });
   }
   std::shared_ptr<Run> finish() const {
-    const bool forced = alone([this] { return !forces_.empty(); });
-    const char* made_by =
-        !forced ? "stepper().finish()" : "stepper(), with forces set between steps, finish()";
+    const char* made_by = alone([this] { return pushed_; })
+                              ? "stepper(), with forces set between steps, finish()"
+                              : "stepper().finish()";
     Asker asker;
     const std::function<bool()> cancelled = [&asker] { return asker(); };
     std::shared_ptr<Run> made;
     {
       const py::gil_scoped_release release;
-      made = std::make_shared<Run>(scene_, so_far(), use_, cancelled, made_by);
+      made = std::make_shared<Run>(scene_, so_far(), std::make_shared<std::mutex>(), cancelled, made_by);
     }
     asker.raise();
     return made;
   }
 
  private:
+  // With the lock.
+  void push() {
+    for (const auto& [of, force] : forces_) {
+      if (!force.allFinite()) throw py::value_error("a force is three finite numbers [N]");
+      stepper_.set_force(of, force);
+      pushed_ = pushed_ || !force.isZero(0.0);
+    }
+  }
+  // So that a signal's handler, which may look at the stepper, finds it free. False: it is there, or has
+  // ended.
+  bool advance_for_a_while(double t) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::lock_guard lock(*use_);
+    push();
+    goes_on_ = stepper_.advance_to(
+        t, [begin] { return std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(100); });
+    return running() && stepper_.time() < t;
+  }
   const Trajectory& trajectory() const { return stepper_.run().trajectory; }
   bool running() const { return goes_on_ && stepper_.time() < stepper_.run().options.end_time; }
   std::vector<std::string> all_warnings() const {
@@ -334,7 +351,7 @@ class SteppedScene {
   Stepper stepper_;
   std::vector<std::string> said_;
   std::map<int, Vec3> forces_;
-  bool goes_on_ = true;
+  bool goes_on_ = true, pushed_ = false;
   std::shared_ptr<std::mutex> use_ = std::make_shared<std::mutex>();
 };
 
@@ -343,12 +360,20 @@ struct NodeForces {
   SteppedScene& of;
 };
 
-// What is written into the answer would reach no force.
-py::array force_of(const NodeForces& forces, const py::object& node) {
-  const Vec3 force = forces.of.force(node);
-  py::array_t<double> array(3, force.data());
-  array.attr("flags").attr("writeable") = false;
-  return array;
+py::array force_of(const py::object& self, const py::object& node) {
+  Vec3& force = self.cast<NodeForces&>().of.force(node);
+  return py::array_t<double>(3, force.data(), self);
+}
+
+bool is_node(const NodeForces& forces, const py::object& node) {
+  try {
+    forces.of.node(node);
+    return true;
+  } catch (const py::builtin_exception&) {
+    return false;
+  } catch (const py::error_already_set&) {  // an index that is none
+    return false;
+  }
 }
 
 template <class Kind>
@@ -422,11 +447,7 @@ void add_scene(py::module_& module) {
       .def("__setitem__", [](NodeForces& forces, const py::object& node,
                              const Vec3& force) { forces.of.set_force(node, force); })
       .def("__getitem__", &force_of)
-      .def("__contains__",
-           [](const NodeForces& forces, const std::string& node) {
-             const std::vector<std::string> names = forces.of.node_names();
-             return std::ranges::find(names, node) != names.end();
-           })
+      .def("__contains__", &is_node)
       .def("__iter__", [](const NodeForces& forces) { return py::iter(py::cast(forces.of.node_names())); });
   py::class_<SteppedScene>(module, "Stepper")
       .def(py::init([](const SceneSource& source) { return std::make_unique<SteppedScene>(source.read()); }),

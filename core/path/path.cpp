@@ -41,15 +41,6 @@ double size_of(const System& system, const VectorXd& z) {
   return wide > 0 ? wide : 1.0;
 }
 
-// What round-off is a share of: the size, and of what stands far from the origin its coordinates.
-double grain_of(const System& system, const VectorXd& z, double size) {
-  constexpr double far = 300;
-  VectorXd q(system.coordinates());
-  system.expand(z, q);
-  const double reach = q.size() > 0 ? q.lpNorm<Eigen::Infinity>() : 0.0;
-  return reach > far * size ? reach : size;
-}
-
 // Largest of the last coefficients, and of those before.
 struct Tail {
   double last = 0.0, before = 0.0;
@@ -87,7 +78,7 @@ class Path::Tracer {
         G_(system.jacobian_pattern()),
         saddle_(system.mass(), G_, 1),
         size_(size_of(system, z)),
-        grain_(grain_of(system, z, size_)),
+        grain_(size_),
         q_(system.coordinates()),
         phi_(system.constraints()),
         y_(phi_.size()),
@@ -98,6 +89,18 @@ class Path::Tracer {
 
   double size() const { return size_; }
   double grain() const { return grain_; }
+  // What round-off is a share of: the size, and of what moves far from the origin its coordinates there.
+  void look_far(const VectorXd& z, const VectorXd& tangent) {
+    constexpr double far = 300, still = 1e-12;
+    VectorXd v(q_.size());
+    system_.expand(z, q_);
+    system_.expand_rate(tangent, v);
+    const double fastest = still * v.lpNorm<Eigen::Infinity>();
+    double reach = 0;
+    for (Index i = 0; i < v.size(); ++i)
+      if (std::abs(v[i]) > fastest) reach = std::max(reach, std::abs(q_[i]));
+    grain_ = reach > far * size_ ? reach : size_;
+  }
   void end_below(double length) { least_ = length; }  // of a piece
 
   // The pose nearest to z and a direction, the projection of `wanted` on the null space of G there, of unit
@@ -288,6 +291,7 @@ Path::Path(std::shared_ptr<const System> system, const VectorXd& z)
     : system_(std::move(system)), tracer_(std::make_unique<Tracer>(*system_, z)) {
   VectorXd pose = z, tangent;
   const VectorXd wanted = tracer_->any_tangent(z);
+  tracer_->look_far(z, wanted);
   if (!(wanted.squaredNorm() > 0) || !tracer_->settle(pose, wanted, tangent))
     throw PathRefused("no path leads on from the pose at the start");
   VectorXd v(system_->coordinates());

@@ -11,6 +11,7 @@ namespace {
 // sine of the fold angle on; what is met with it.
 constexpr double singular_margin = 1e-4, deployed_already = 1e-12, at_once = 1e-8;
 constexpr double now = 1e-12;          // of a step
+constexpr double no_rate = 1e-6;       // a rate that is none, in a step
 constexpr double deployed_at = 1e-12;  // what rounding leaves of the deployed pose, as a share of the way
 constexpr int samples = 24;            // within a step
 constexpr double never_moves = 1e-11;  // over a piece of the path, of a turn or of the structure's length
@@ -156,18 +157,22 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
   for (const double t1 : looked_at(motion, from, to)) {
     margins(motion, t1, b, rates_b);
     if (a[deployed] > margin_) armed_ = true;
+    const bool turns_back = rates_b[deployed] > 0 && b[deployed] > deployed_at;
+    if (armed_ && std::abs(a[deployed]) <= deployed_at && turns_back) return {t0, static_cast<int>(deployed)};
     if (armed_ && folds_ && b[deployed] <= 0 && !is_fold_passed(a[deployed], b[deployed])) armed_ = false;
     const auto below = [&](Index i, double m) { return i < deployed ? m < -1 : armed_ && m <= 0; };
     for (Index i = 0; i <= deployed; ++i) {
       double end = t1, left = b[i];
-      bool touches = false;
+      // At a dead centre, or where the motion turns.
+      const auto touched = [&] { return i == deployed && armed_ && std::abs(left) <= deployed_at; };
+      bool touches = touched() && left <= 0 && std::abs(rates_b[i]) * step_ <= no_rate;
       if (!below(i, left) && rates_a[i] < 0 && rates_b[i] > 0) {
         // It cannot have fallen further than at the steeper of both rates.
         const double reach = std::max(-rates_a[i], rates_b[i]) * (t1 - t0);
         if (!below(i, std::min(a[i], b[i]) - reach)) continue;
         end = least_between(motion, i, t0, t1);
         left = margin(motion, end, i);
-        touches = i == deployed && armed_ && left > 0 && left <= deployed_at;  // at a dead centre
+        touches = touched();
       }
       if ((!below(i, left) && !touches) || !(a[i] > left)) continue;
       double t = touches ? end : zero_of(motion, i, t0, end);

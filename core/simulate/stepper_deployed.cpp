@@ -81,6 +81,20 @@ std::optional<Dip> Stepper::Loop::dip_inside(const Probe& to) {
   return {};
 }
 
+// Where the pose is touched as a step ends, rounding says on which side of that.
+std::optional<Dip> Stepper::Loop::dip_at_end(const Probe& to, double h) {
+  if (!deploys_regularly(model().structure) || margin_ > stepping::deployed_already ||
+      fold(now()) <= margin_ || std::abs(fold(to.state)) > 2 * margin_)
+    return {};
+  State behind = now();
+  const double longer = 1.1 * h;
+  if (behind.t + longer > next_edge() || !fresh_integrator()->step(behind, longer).ok() ||
+      fold(behind) <= margin_)
+    return {};
+  return step_to_dip(
+      model(), [this] { return fresh_integrator(); }, now(), behind, longer, margin_);
+}
+
 // The deployed pose where this step reaches it; a step that failed without that is tried in parts. False
 // where the run ends.
 bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& event) {
@@ -112,12 +126,14 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
     return regular_ = true;
   }
   std::optional<Dip> dip = dip_inside(to);
+  if (!dip) dip = dip_at_end(to, h);
   if (!dip && !crosses(to.state)) {
     dip = step_to_dip(
         model(), [this] { return fresh_integrator(); }, now(), to.state, h, margin_);
     if (!dip) return true;
   }
-  if (dip && dip->touches) {
+  touched_ = dip && dip->touches;
+  if (touched_) {
     event = now();
     regular_ = fresh_integrator()->step(*event, dip->length).ok();
     if (!regular_) event.reset();
@@ -180,6 +196,16 @@ bool Stepper::Loop::latch() {
   for (std::size_t i = 0; i < sides_.stops().size(); ++i) pulled.push_back(sides_.active(i));
   if (sides_.any_held() || sides_.any_reeled()) lock_held();
   const bool gives = latch_gives(base_->structure);
+  // What is touched in passing is a dead centre of the measure, which holding it does not hold.
+  VectorXd v(system().coordinates());
+  system().expand_rate(now().w, v);
+  constexpr double still = 1e-6;  // of the structure, in a step
+  if (touched_ && !gives &&
+      v.lpNorm<Eigen::Infinity>() * run_.options.step > still * reference_length(base_->structure))
+    return fail(
+        "a latch cannot hold the structure in a pose in which what tells it is deployed passes its largest "
+        "or least value; give the latch a stiffness (forces, kind = \"latch\"), or tell the pose by another "
+        "measure");
   if (gives && singular_at_end(run_.trajectory))
     return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
   base_ = latched_model(*base_, run_.options.eliminate_linear);

@@ -459,6 +459,7 @@ class Stepper::Loop {
   std::optional<State> locate(double h, double latest);
   bool arrives(const Probe& to);
   std::optional<Dip> dip_inside(const Probe& to);
+  std::optional<Dip> dip_at_end(const Probe& to, double h);
   bool find_deployed(Probe& to, double h, std::optional<State>& event);
   double uneven(const State& event);
   bool deployed(State& event, Probe& to, double h);
@@ -484,7 +485,7 @@ class Stepper::Loop {
   bool have_begin_ = false, pushed_ = false;  // pushed: since the last step
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
-  bool deployed_ = false, ended_ = false, regular_ = false;
+  bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false;
   double margin_ = stepping::singular_margin;  // a tenth of where the run began, if that is less
   VectorXd q_;
   std::size_t new_ = 0, part_ = 0;  // first state that was not handed over, first of the present part

@@ -33,23 +33,32 @@ std::vector<double> kinks(const TimeFunction& f) {
   return out;
 }
 
+double median_of(std::vector<double> x) {
+  if (x.empty()) return 0.0;
+  const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
+  std::nth_element(x.begin(), middle, x.end());
+  return *middle;
+}
+
 void add_points_of_spline(const TimeFunction& f, double step, std::vector<TimeEdge>& edges) {
   const std::vector<double>& x = f.times;
   for (const double end : {x.front(), x.back()}) edges.push_back({end, true, true});
   const std::vector<double> kink = kinks(f);
-  std::vector<double> sorted = kink;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
+  std::vector<double> moving;  // of rows that do not rest
+  for (std::size_t i = 1; i + 1 < x.size(); ++i)
+    if (f.values[i - 1] != f.values[i] || f.values[i] != f.values[i + 1]) moving.push_back(kink[i]);
+  const double of_all = median_of(kink), of_moving = median_of(moving);
   const auto [low, high] = std::minmax_element(f.values.begin(), f.values.end());
-  const double usual = 30 * *middle, range = *high - *low, near = (1 - 1e-9) * step;
+  const double range = *high - *low, near = (1 - 1e-9) * step;
   double fastest = 0;
   for (std::size_t i = 1; i < x.size(); ++i)
     fastest = std::max(fastest, std::abs(f.values[i] - f.values[i - 1]) / (x[i] - x[i - 1]));
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
     const double before = x[i] - x[i - 1], after = x[i + 1] - x[i];
     // Of points that lie close, as those that follow an end at speed, none is seen in the values themselves.
-    const bool stands_out = kink[i] > 1e-5 * range || kink[i] > 1e-6 * fastest * std::min(before, after);
-    if ((stands_out && kink[i] > usual) || (before >= near && after >= near)) edges.push_back({x[i], false});
+    const bool in_value = kink[i] > std::max(1e-5 * range, 30 * of_all),
+               in_rate = kink[i] > std::max(1e-6 * fastest * std::min(before, after), 30 * of_moving);
+    if (in_value || in_rate || (before >= near && after >= near)) edges.push_back({x[i], false});
   }
 }
 
