@@ -118,9 +118,9 @@ int cmd_study(const Arguments& arguments) {
   StudySession session(arguments, "measuring", study_identity(asked, scene), "study.csv");
   const StudyHooks hooks = session.hooks();
   plan.timing.repeats = repeats;
+  const auto team = join_team(arguments, session);
   Journal earlier({}, study_columns(), study_key_columns, study_number_columns(), is_study_point);
   session.require_asked(earlier, [&](const auto& row) { return asks_for(plan, row); });
-  const auto team = join_team(arguments, session);
   std::optional<Study> found;
   {
     Journal journal(team ? team->journal() : session.journal(), study_columns(), study_key_columns,

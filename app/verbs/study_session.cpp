@@ -140,11 +140,6 @@ void StudySession::begin() {
   const bool begun = arguments_.join ? fs::exists(directory() / "scene.toml", error)
                                      : !journals_like(journal_, directory()).empty();
   if (begun) require_identity(directory(), identity_, "use another directory, or --force to begin anew");
-  if (!arguments_.join)
-    require_as_written(directory(), {journal()},
-                       arguments_.study.merge.empty()
-                           ? "use --force to begin anew, which keeps it as " + journal_ + ".kept-1"
-                           : out_of_the_way);
   if (!identity_.empty()) write_file_atomically(directory() / "scene.toml", identity_);
   if (shard()) output_.lock().share();
 }
@@ -173,7 +168,12 @@ std::function<void()> StudySession::room_for_first() {
 
 void StudySession::grows(const fs::path& file) {
   grows_ = file;
-  if (!in_the_way_) output_.written().will_grow(file.lexically_relative(directory()).generic_string());
+  if (in_the_way_) return;
+  const bool force_helps = arguments_.study.merge.empty() && !arguments_.force;
+  require_as_written(
+      directory(), {file},
+      force_helps ? "use --force to begin anew, which keeps it as " + journal_ + ".kept-1" : out_of_the_way);
+  output_.written().will_grow(file.lexically_relative(directory()).generic_string());
 }
 
 // Another study's results go, those of this one too; but a shard leaves alone what other shards of the same

@@ -57,7 +57,8 @@ class StudySession {
   StudySession(const Arguments& arguments, std::string task, const std::string& identity,
                std::string journal);
 
-  // A file in the directory has results added to it as they come.
+  // A file in the directory has results added to it as they come. Throws FileError where it was finished and
+  // changed since.
   void grows(const std::filesystem::path& file);
 
   StudyHooks hooks();

@@ -92,6 +92,47 @@ TEST_CASE("a finished table that was changed is told of by verify and taken by n
   }
 }
 
+// Nothing of them is read: they are in the way of new ones.
+TEST_CASE("tables that no verb goes on with are kept aside where they were changed") {
+  const ScratchDirectory dir;
+  for (const std::string verb : {"modes", "margin"}) {
+    INFO(verb);
+    const std::string out = dir / verb, table = out + "/" + verb + ".csv";
+    const Words words{verb, "hoop6", "--quiet", "-o", out};
+    REQUIRE(run_program(words).code == 0);
+    const std::string right = file_text(table), mine = edited(right);
+    dir.write(verb + "/" + verb + ".csv", mine);
+    const ProgramResult again = run_program(words);
+    CHECK(again.code == 0);
+    CHECK(again.err.find("it is kept as " + table + ".kept-1") != std::string::npos);
+    CHECK(file_text(table) == right);
+    CHECK(file_text(table + ".kept-1") == mine);
+  }
+}
+
+// With --force a share begins anew beside another one at work, but puts nothing aside there.
+TEST_CASE("a changed table of one share is not cured by the --force that was given") {
+  const ScratchDirectory dir;
+  const Words sweep{"sweep",     "pendulum",         "--vary",  "structure.angle=10:80:4000",
+                    "--measure", "energy",           "--set",   "solver.end_time=1",
+                    "--set",     "solver.step=2e-4", "--quiet", "-o",
+                    dir / "s",   "--shard"};
+  const std::string table = dir / "s/sweep_1_of_2.csv";
+  std::string other = "timeout 60 \"" UNFURL_PROGRAM "\"";
+  for (const std::string& word : sweep) other += " '" + word + "'";
+  const std::string script =
+      other + " 1/2 --threads 1 2>/dev/null & p=$!; " + other + " 2/2 --threads 1 2>/dev/null & q=$!; cd '" +
+      (dir / "") + "'; until [ -s s/sweep_1_of_2.csv ]; do sleep 0.1; done; kill -INT $p; wait $p; " +
+      "echo mine > s/sweep_1_of_2.csv; \"" UNFURL_PROGRAM "\"";
+  std::string forced = script;
+  for (const std::string& word : sweep) forced += " '" + word + "'";
+  forced += " 1/2 --force 2>said; code=$?; kill $q; wait $q; exit $code";
+  const int code = std::system(forced.c_str());
+  CHECK(WEXITSTATUS(code) == 5);
+  CHECK(file_text(dir / "said").find("put back what was written, or move it away: ") != std::string::npos);
+  CHECK(file_text(table) == "mine\n");
+}
+
 TEST_CASE("changed tables are neither merged nor joined") {
   const ScratchDirectory dir;
   const Words sweep =
