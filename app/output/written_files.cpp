@@ -24,8 +24,9 @@ namespace fs = std::filesystem;
 constexpr const char* any_content = "----------------";
 constexpr const char* made = "Made by unfurl ";
 constexpr const char* written_into = "Written into by unfurl ";
-constexpr const char* of_figures = "figure";  // owner of numbers that no other verb makes anew
-constexpr const char* of_workers = "join/";   // what the workers of a --join keep of their own
+constexpr const char* in_order = ", in order";  // behind the version: as older lists are not
+constexpr const char* of_figures = "figure";    // owner of numbers that no other verb makes anew
+constexpr const char* of_workers = "join/";     // what the workers of a --join keep of their own
 
 class Descriptor {
  public:
@@ -128,7 +129,9 @@ void WrittenFiles::read() {
 }
 
 // The last line of a name says what its bytes are.
-std::vector<WrittenFiles::Verdict> WrittenFiles::judge(const fs::path& directory, const Lines& lines) {
+std::vector<WrittenFiles::Verdict> WrittenFiles::judge(const fs::path& directory, const std::string& title,
+                                                       const Lines& lines) {
+  const bool ordered = title.ends_with(in_order);
   std::vector<Verdict> verdicts;
   for (const auto& [name, known] : lines) {
     const Descriptor parent = parent_in(directory, name);
@@ -141,7 +144,8 @@ std::vector<WrittenFiles::Verdict> WrittenFiles::judge(const fs::path& directory
     if (now.empty()) {
       verdict.kind = Verdict::missing;
     } else if (fits != known.rend()) {
-      verdict.kind = last.checksum == now || last.checksum == any_content ? Verdict::same : Verdict::earlier;
+      const bool as_last = last.checksum == now || last.checksum == any_content || !ordered;
+      verdict.kind = as_last ? Verdict::same : Verdict::earlier;
       verdict.owner = fits->owner;
     } else if (last.checksum == any_content) {
       verdict.kind = Verdict::growing;
@@ -157,7 +161,7 @@ std::vector<WrittenFiles::Verdict> WrittenFiles::verify(const fs::path& director
   const Lines lines = lines_of(file.text, title);
   if (!file.error.empty() || (!title.starts_with(made) && !title.starts_with(written_into)))
     throw FileError(directory, "has no list of what unfurl wrote into it (.unfurl)");
-  return judge(directory, lines);
+  return judge(directory, title, lines);
 }
 
 std::vector<std::string> WrittenFiles::changed(const fs::path& directory,
@@ -166,7 +170,7 @@ std::vector<std::string> WrittenFiles::changed(const fs::path& directory,
   Lines lines = lines_of(read_text_file((directory / list_name).string()).text, title);
   std::erase_if(lines, [&](const auto& entry) { return !asked(entry.first); });
   std::vector<std::string> names;
-  for (const Verdict& verdict : judge(directory, lines))
+  for (const Verdict& verdict : judge(directory, title, lines))
     if (verdict.kind == Verdict::changed) names.push_back(verdict.name);
   return names;
 }
@@ -177,7 +181,7 @@ bool WrittenFiles::begin(bool was_empty) {
   const Descriptor file(::open(list.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
   if (!file && errno == EEXIST) return false;
   if (!file) throw FileError(list, errno);
-  title_ = (was_empty ? made : written_into) + version();
+  title_ = (was_empty ? made : written_into) + version() + in_order;
   const std::string line = title_ + "\n";
   if (::write(file.get(), line.data(), line.size()) == static_cast<ssize_t>(line.size())) return true;
   const int trouble = errno;

@@ -17,15 +17,15 @@ namespace unfurl {
 
 // The list DIR/.unfurl of what unfurl wrote into DIR: nothing else there is ever removed or replaced.
 //
-//   Made by unfurl 0.1.0                     DIR was empty before; else "Written into by unfurl 0.1.0"
+//   Made by unfurl 0.1.0, in order           DIR was empty before; else "Written into by unfurl 0.1.0, ..."
 //   cbf29ce484222325 run series.csv          checksum of its bytes, whose result it is, name in DIR
 //   ---------------- sweep sweep.csv         of a file that grows: whatever its bytes are
 //
 // A line is appended before the file gets its name, so that a kill leaves no file without one; a name may
-// have several lines: the last one says what its bytes are, and a file is ours where any of them fits it. A
-// file grows only while its line for that is the last. While the object lives every file that
-// the program writes into DIR is entered under `owner`. A file in the way that is not ours, or was changed
-// since, is kept beside ours as NAME.kept-1 (-2, ...).
+// have several lines: the last one says what its bytes are, and a file is ours where any of them fits it. (In
+// lists without "in order" the last one is any of them.) A file grows only while its line for that is the
+// last. While the object lives every file that the program writes into DIR is entered under `owner`. A file
+// in the way that is not ours, or was changed since, is kept beside ours as NAME.kept-1 (-2, ...).
 class WrittenFiles final : public FileWatcher {
  public:
   // Reads the list, or begins one. Throws FileError where it cannot be written.
@@ -85,7 +85,8 @@ class WrittenFiles final : public FileWatcher {
   using Lines = std::map<std::string, std::vector<Line>>;  // by name, in the order of the list
   static Lines lines_of(const std::string& list, std::string& title);
   void read();
-  static std::vector<Verdict> judge(const std::filesystem::path& directory, const Lines& lines);
+  static std::vector<Verdict> judge(const std::filesystem::path& directory, const std::string& title,
+                                    const Lines& lines);
   void append(const std::string& name, const std::vector<std::string>& checksums);
   bool begin(bool was_empty);
   void write_anew();

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -242,6 +243,17 @@ TEST_CASE("a table of an earlier run that was put back is none of the last one")
     CHECK(run_program({"verify", out}).code == 0);
   }
   CHECK(file_text(out + "/series.csv") == earlier);
+  // Builds that did not say so had a line once, wherever it stood: their last one says nothing.
+  const std::string list = file_text(out + "/.unfurl");
+  const std::size_t title = list.find('\n'), mark = list.find(", in order");
+  REQUIRE(mark < title);
+  std::string lines;
+  std::istringstream in_order(list.substr(title + 1));
+  for (std::string line; std::getline(in_order, line);) lines.insert(0, line + "\n");
+  dir.write("out/.unfurl", list.substr(0, title + 1) + lines);
+  CHECK(run_program({"verify", out}).code == 7);
+  dir.write("out/.unfurl", list.substr(0, mark) + "\n" + lines);
+  CHECK(run_program({"verify", out}).code == 0);
 }
 
 }  // namespace unfurl::changed_tables_test
