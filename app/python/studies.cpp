@@ -88,11 +88,13 @@ fs::path journal_in(const fs::path& folder, const SweepPlan& plan) {
   if (error) throw FileError(folder, error.value());
   const fs::path journal = folder / "sweep.csv";
   const TextFile known = read_text_file((folder / "scene.toml").string());
-  if (known.error.empty() ? known.text != identity : fs::exists(journal, error))
+  const std::optional<std::string> both =
+      known.error.empty() ? identity_of_both(known.text, identity) : identity;
+  if (!both || (!known.error.empty() && fs::exists(journal, error)))
     throw FileError(folder,
                     "holds results of another scene, other settings or another version of unfurl; "
                     "remove them, or use another folder");
-  if (!known.error.empty()) write_file_atomically(folder / "scene.toml", identity);
+  if (*both != known.text) write_file_atomically(folder / "scene.toml", *both);
   return journal;
 }
 

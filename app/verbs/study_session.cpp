@@ -14,6 +14,7 @@
 #include "core/export/atomic_file.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
+#include "core/study/sweep.hpp"
 #include "core/text/version.hpp"
 #include "render/plot/figure_data.hpp"
 
@@ -84,9 +85,11 @@ std::string study_identity(const std::string& what, const Scene& scene) {
          scene_text(scene);
 }
 
-void require_identity(const fs::path& directory, const std::string& identity, const std::string& cure) {
+std::string require_identity(const fs::path& directory, const std::string& identity,
+                             const std::string& cure) {
   const TextFile scene = read_text_file((directory / "scene.toml").string());
-  if (!scene.error.empty() || scene.text == identity) return;
+  if (!scene.error.empty()) return identity;
+  if (const auto both = identity_of_both(scene.text, identity)) return *both;
   const std::size_t there = std::min(scene.text.find('\n'), scene.text.size());
   const std::size_t asked = std::min(identity.find('\n'), identity.size());
   std::string what = "holds results of another scene or other settings; ";
@@ -139,7 +142,8 @@ void StudySession::begin() {
   if (!identity_.empty()) output_.require_scene(identity_, arguments_.force);
   const bool begun = arguments_.join ? fs::exists(directory() / "scene.toml", error)
                                      : !journals_like(journal_, directory()).empty();
-  if (begun) require_identity(directory(), identity_, "use another directory, or --force to begin anew");
+  if (begun)
+    identity_ = require_identity(directory(), identity_, "use another directory, or --force to begin anew");
   if (!identity_.empty()) write_file_atomically(directory() / "scene.toml", identity_);
   if (shard()) output_.lock().share();
 }
@@ -180,7 +184,8 @@ void StudySession::grows(const fs::path& file) {
 // sweep have finished. What is called as a journal and is not ours is put aside.
 void StudySession::begin_anew() {
   const TextFile scene = read_text_file((directory() / "scene.toml").string());
-  if (shard() && scene.error.empty() && scene.text == identity_) {
+  if (const auto both = identity_of_both(scene.text, identity_); both && shard() && scene.error.empty()) {
+    identity_ = *both;
     output_.written().remove(journal_);
     std::error_code error;
     if (fs::exists(journal(), error)) output_.written().keep_aside(journal_);

@@ -37,9 +37,10 @@ void warn_of_idle_sets(const Arguments& arguments, const std::vector<std::string
 // "solver.rho_inf: does nothing with method = 'dvm'", where the scene says that of the key; else empty.
 std::string idle_key_text(const Scene& scene, const std::string& key);
 
-// Throws FileError, with what can be done, where DIR/scene.toml tells of other results than `identity`.
-void require_identity(const std::filesystem::path& directory, const std::string& identity,
-                      const std::string& cure);
+// What DIR/scene.toml is to say with results of `identity` there. Throws FileError, with what can be done,
+// where it tells of others.
+std::string require_identity(const std::filesystem::path& directory, const std::string& identity,
+                             const std::string& cure);
 
 // Throws FileError, with what can be done, where one of these tables in the directory was finished and
 // changed since.

@@ -86,9 +86,9 @@ FilesBeside::InUse::~InUse() {
   files_in_use = before_;
 }
 
-void FilesBeside::each(const std::function<void(const std::string&, const std::string&)>& told) {
+void FilesBeside::each(const std::function<void(const std::string&, const TextFile&)>& told) {
   const std::lock_guard lock(mutex_);
-  for (const auto& [path, file] : read_) told(path, file.text);
+  for (const auto& [path, file] : read_) told(path, file);
 }
 
 TextFile read_file_beside(const std::string& folder, const std::string& name) {
@@ -101,10 +101,8 @@ TextFile read_file_beside(const std::string& folder, const std::string& name) {
   }
   if (std::string error = outside_error(folder, name); !error.empty()) return {name, "", std::move(error)};
   TextFile file = read_text_file(path);
-  if (!file.error.empty())
-    file.error = "cannot read " + file.path + ": " + file.error;
-  else if (files_in_use)
-    files_in_use->read_[path] = file;
+  if (!file.error.empty()) file.error = "cannot read " + file.path + ": " + file.error;
+  if (files_in_use) files_in_use->read_[path] = file;
   return file;
 }
 

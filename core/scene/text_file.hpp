@@ -46,8 +46,8 @@ class FilesBeside {
     FilesBeside* before_;
   };
 
-  // Those that could be read, by their paths.
-  void each(const std::function<void(const std::string& path, const std::string& text)>& told);
+  // By their paths, also those that could not be read.
+  void each(const std::function<void(const std::string& path, const TextFile& file)>& told);
 
  private:
   friend TextFile read_file_beside(const std::string& folder, const std::string& name);

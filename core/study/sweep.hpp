@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,9 @@ struct SweepPlan {
 // Comments of TOML: the contents, told by a checksum, of files that the values of an axis name and the scene
 // as it stands does not. Points of others are of another sweep.
 std::string files_of_points(const SweepPlan& plan);
+// What the points of a directory belong to, which says `there`, once those of a sweep are beside them that
+// says `now`: one may name files that the other does not. None where they are of different sweeps.
+std::optional<std::string> identity_of_both(const std::string& there, const std::string& now);
 
 // What is varied may be wrong as the scene has it: its source, then, has the values of a point that is right.
 void stand_on_a_point(SweepPlan& plan);

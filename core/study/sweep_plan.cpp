@@ -12,9 +12,11 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "core/export/checksum.hpp"
+#include "core/scene/text_file.hpp"
 #include "core/scene/write.hpp"
 #include "core/study/sweep.hpp"
 #include "core/text/nearest_name.hpp"
@@ -277,6 +279,25 @@ std::string unit_of_axis(const SweepPlan& plan, const SweepAxis& axis,
   throw StudyError("the grid has more than 1e7 points, " + short_number(points, 4) + ": " + product);
 }
 
+constexpr const char* not_there = "not there";
+
+// An identity without the lines of files_of_points(), and these: what is there by "# NAME: ".
+std::pair<std::string, std::map<std::string, std::string>> files_apart(const std::string& identity) {
+  std::string rest;
+  std::map<std::string, std::string> files;
+  std::istringstream lines(identity);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t end = line.rfind("\": ") + 3;
+    const std::string sum = line.starts_with("# \"") && end > 3 ? line.substr(end) : "";
+    if (sum == not_there || (sum.size() == Checksum().text().size() &&
+                             sum.find_first_not_of("0123456789abcdef") == std::string::npos))
+      files[line.substr(0, end)] = sum;
+    else
+      rest += line + "\n";
+  }
+  return {rest, files};
+}
+
 }  // namespace
 
 std::string files_of_points(const SweepPlan& plan) {
@@ -291,13 +312,26 @@ std::string files_of_points(const SweepPlan& plan) {
       }
   }
   std::string text;
-  plan.source.files->each([&](const std::string& path, const std::string& contents) {
+  plan.source.files->each([&](const std::string& path, const TextFile& file) {
     if (own.contains(path)) return;
     Checksum sum;
-    sum.add(contents);
+    sum.add(file.text);
     const auto name = std::filesystem::path(path).lexically_relative(plan.source.folder);
-    text += "# " + toml_string(name.string()) + ": " + sum.text() + "\n";
+    text += "# " + toml_string(name.string()) + ": " + (file.error.empty() ? sum.text() : not_there) + "\n";
   });
+  return text;
+}
+
+std::optional<std::string> identity_of_both(const std::string& there, const std::string& now) {
+  const auto [scene, files] = files_apart(now);
+  const auto [other, others] = files_apart(there);
+  if (scene != other) return std::nullopt;
+  std::string text = now;
+  for (const auto& [name, sum] : others)
+    if (const auto found = files.find(name); found == files.end())
+      text += name + sum + "\n";
+    else if (found->second != sum)
+      return std::nullopt;
   return text;
 }
 

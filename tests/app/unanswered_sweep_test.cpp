@@ -106,6 +106,59 @@ TEST_CASE("points that name a file belong to its contents, by the key as by a va
   }
 }
 
+// More values name more files: what is there stays, whichever files were looked at.
+TEST_CASE("a sweep over the names of files goes on with more of them") {
+  const ScratchDirectory dir;
+  const auto nodes = [&](const std::string& file, const std::string& length) {
+    dir.write(file, "name,x,y,z,fixed\nA,0,0,0,true\nB," + length + ",0,0,false\n");
+  };
+  dir.write("r.csv", "a,b,mass\nA,B,2\n");
+  for (const char* i : {"1", "2"})
+    for (const char* k : {"1", "2", "3"}) nodes(std::string("n") + i + "_" + k + ".csv", k);
+  const std::string rest =
+      "'\nrods_file = 'r.csv'\n[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nstep = 0.01\nend_time = "
+      "0.1\n";
+  const std::string kind = "[structure]\nkind = 'custom'\nnodes_file = '";
+  const std::string by_key = dir.write("key.toml", kind + "n1_1.csv" + rest);
+  const std::string by_two =
+      dir.write("two.toml", "[variables]\ni = 1\nk = 1\n" + kind + "n{i}_{k}.csv" + rest);
+  struct Asked {
+    std::string scene;
+    std::vector<std::string> few, more, fewer;
+  };
+  for (const Asked& asked : {Asked{by_key,
+                                   {"--vary", "structure.nodes_file=n1_1.csv,n1_2.csv"},
+                                   {"--vary", "structure.nodes_file=n1_1.csv,n1_3.csv,n1_2.csv"},
+                                   {"--vary", "structure.nodes_file=n1_1.csv,n1_3.csv"}},
+                             Asked{by_two,
+                                   {"--vary", "variables.i=1,2", "--vary", "variables.k=1,2"},
+                                   {"--vary", "variables.i=1,2", "--vary", "variables.k=1:3:3"},
+                                   {"--vary", "variables.i=1,2", "--vary", "variables.k=1,3"}}}) {
+    INFO(asked.scene);
+    nodes("n1_3.csv", "3");
+    const auto sweep = [&](const std::vector<std::string>& values, const std::string& out) {
+      std::vector<std::string> words{"sweep",  asked.scene, "--measure", "max:kinetic_energy_J",
+                                     "--dpi",  "40",        "--quiet",   "-o",
+                                     dir / out};
+      words.insert(words.end(), values.begin(), values.end());
+      return run_program(words);
+    };
+    const std::string out = "out" + std::to_string(asked.few.size());
+    REQUIRE(sweep(asked.few, out).code == 0);
+    const ProgramResult more = sweep(asked.more, out);
+    INFO(more.err);
+    CHECK(more.code == 0);
+    REQUIRE(sweep(asked.more, out + "whole").code == 0);
+    CHECK(file_text(dir / (out + "/sweep.csv")) == file_text(dir / (out + "whole/sweep.csv")));
+    const ProgramResult fewer = sweep(asked.fewer, out);
+    CHECK(fewer.code == 5);
+    CHECK(fewer.err.find("ask for them, too") != std::string::npos);
+    CHECK(sweep(asked.more, out).code == 0);
+    nodes("n1_3.csv", "4");
+    CHECK(sweep(asked.more, out).code == 5);
+  }
+}
+
 TEST_CASE("what is wrong with an axis is said of --vary") {
   const ScratchDirectory dir;
   const auto sweep = [&](const std::string& axis) {
