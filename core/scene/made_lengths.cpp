@@ -13,7 +13,10 @@ StructureError of_made_lengths(const Scene& scene, const StructureError& error) 
   const double size = !find_family(scene.kind)              ? scene.custom.material.length_error
                       : scene.structure.has("length_error") ? scene.structure.real("length_error")
                                                             : 0.0;
-  if (given || !(size > 0)) return error;
+  // Other things that cannot be have causes and cures of their own.
+  const bool of_lengths =
+      error.key.ends_with(".length") && error.message.find("no pose close") != std::string::npos;
+  if (given || !(size > 0) || !of_lengths) return error;
   return {"length_error",
           "no pose close to the given one has the lengths that rods are made with, as where rigid rods are "
           "redundant: take rod_model = \"elastic\", whose rods give, or length_error = 0"};
