@@ -15,8 +15,8 @@ struct PosedMoments {
 
 // All states, and in a step in which a node leaves the straight line between two of them by more than a
 // thousandth of the structure's size as many moments as bring it back to that; no more of them than a picture
-// can wait for, those where they matter most. Steps that lead straight cost nothing; where the states at their
-// ends do not tell, as from rest to rest, one moment.
+// can wait for, those where they matter most. Steps that lead straight cost nothing; where the states at
+// their ends do not tell, as from rest to rest, one moment.
 PosedMoments posed_moments(const Trajectory& run);
 
 // The poses that lie at equal steps of the way that all nodes go together, from the first one on; the last
