@@ -17,16 +17,17 @@ void play(PanelState& state) {
     state.playback = toggled(state.playback, run->start_time(), run->end_time());
 }
 
-// To a neighbour among the states that were solved for.
+// To the next time of a state that was solved for, or the last one; of an event there are two at its time.
 void step(PanelState& state, int way) {
   const auto* run = trajectory_of(state);
   if (!run) return;
   state.playback.playing = false;
-  std::size_t i = 0;
-  while (i + 1 < run->size() && run->time(i + 1) <= state.playback.t + 1e-12) ++i;
-  const bool between = state.playback.t > run->time(i) + 1e-12;
-  if (way > 0 && i + 1 < run->size()) ++i;
-  if (way < 0 && !between && i > 0) --i;
+  const double now = state.playback.t;
+  std::size_t i = way > 0 ? run->size() - 1 : 0;
+  for (std::size_t k = 0; k < run->size(); ++k) {
+    if (way < 0 && run->time(k) < now) i = k;
+    if (way > 0 && run->time(k) > now) i = std::min(i, k);
+  }
   state.playback.t = run->time(i);
 }
 

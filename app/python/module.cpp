@@ -213,7 +213,6 @@ class SteppedScene {
   bool step() {
     const py::gil_scoped_release release;
     const std::lock_guard lock(*use_);
-    push();
     return goes_on_ = stepper_.step();
   }
   bool advance_to(double t) {
@@ -284,17 +283,19 @@ class SteppedScene {
     const int of = node(key);
     const py::gil_scoped_release release;
     const std::lock_guard lock(*use_);
-    forces_.try_emplace(of, Vec3::Zero()).first->second = force;
-    push();
+    stepper_.set_force(of, force);
+    forces_[of] = force;
   }
-  // What acts from the next step on, also where it is written into.
-  Vec3& force(const py::object& key) {
-    return *alone([this, of = node(key)] { return &forces_.try_emplace(of, Vec3::Zero()).first->second; });
+  Vec3 force(const py::object& key) const {
+    return alone([this, of = node(key)] {
+      const auto found = forces_.find(of);
+      return found == forces_.end() ? Vec3(Vec3::Zero()) : found->second;
+    });
   }
   std::shared_ptr<Run> finish() const {
-    const char* made_by = alone([this] { return pushed_; })
-                              ? "stepper(), with forces set between steps, finish()"
-                              : "stepper().finish()";
+    const bool forced = alone([this] { return !forces_.empty(); });
+    const char* made_by =
+        !forced ? "stepper().finish()" : "stepper(), with forces set between steps, finish()";
     Asker asker;
     const std::function<bool()> cancelled = [&asker] { return asker(); };
     std::shared_ptr<Run> made;
@@ -307,20 +308,11 @@ class SteppedScene {
   }
 
  private:
-  // With the lock.
-  void push() {
-    for (const auto& [of, force] : forces_) {
-      if (!force.allFinite()) throw py::value_error("a force is three finite numbers [N]");
-      stepper_.set_force(of, force);
-      pushed_ = pushed_ || !force.isZero(0.0);
-    }
-  }
   // So that a signal's handler, which may look at the stepper, finds it free. False: it is there, or has
   // ended.
   bool advance_for_a_while(double t) {
     const auto begin = std::chrono::steady_clock::now();
     const std::lock_guard lock(*use_);
-    push();
     goes_on_ = stepper_.advance_to(
         t, [begin] { return std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(100); });
     return running() && stepper_.time() < t;
@@ -351,7 +343,7 @@ class SteppedScene {
   Stepper stepper_;
   std::vector<std::string> said_;
   std::map<int, Vec3> forces_;
-  bool goes_on_ = true, pushed_ = false;
+  bool goes_on_ = true;
   std::shared_ptr<std::mutex> use_ = std::make_shared<std::mutex>();
 };
 
@@ -359,11 +351,6 @@ class SteppedScene {
 struct NodeForces {
   SteppedScene& of;
 };
-
-py::array force_of(const py::object& self, const py::object& node) {
-  Vec3& force = self.cast<NodeForces&>().of.force(node);
-  return py::array_t<double>(3, force.data(), self);
-}
 
 bool is_node(const NodeForces& forces, const py::object& node) {
   try {
@@ -446,7 +433,8 @@ void add_scene(py::module_& module) {
   py::class_<NodeForces>(module, "NodeForces")
       .def("__setitem__", [](NodeForces& forces, const py::object& node,
                              const Vec3& force) { forces.of.set_force(node, force); })
-      .def("__getitem__", &force_of)
+      .def("__getitem__",
+           [](const NodeForces& forces, const py::object& node) { return forces.of.force(node); })
       .def("__contains__", &is_node)
       .def("__iter__", [](const NodeForces& forces) { return py::iter(py::cast(forces.of.node_names())); });
   py::class_<SteppedScene>(module, "Stepper")

@@ -144,6 +144,27 @@ TEST_CASE("every action has a name, and no two have one key") {
   }
 }
 
+TEST_CASE("each step back or forward goes to another time, past what has two states at one") {
+  PanelOptions options = PanelDriver::small();
+  options.measure_errors = false;
+  PanelDriver driver(options, "cable_ring");
+  REQUIRE(driver.state().shown);
+  const Trajectory& run = driver.state().shown->simulation.trajectory;
+  std::size_t doubled = 0;
+  for (std::size_t i = 1; i < run.size(); ++i) doubled += run.time(i) == run.time(i - 1);
+  REQUIRE(doubled > 0);
+  for (const bool back : {true, false}) {
+    driver.key(back ? Key::end : Key::home);
+    std::size_t steps = 0;
+    for (double before = driver.state().playback.t + 1; driver.state().playback.t != before; ++steps) {
+      before = driver.state().playback.t;
+      driver.key(back ? Key::left : Key::right);
+    }
+    CHECK(driver.state().playback.t == (back ? run.start_time() : run.end_time()));
+    CHECK(steps == run.size() - doubled);
+  }
+}
+
 TEST_CASE("the guided tour has six steps, comes once, and can be called again") {
   PanelOptions options = PanelDriver::small();
   options.measure_errors = false;
