@@ -139,9 +139,11 @@ OwnDirectory::~OwnDirectory() {
     for (fs::path part = plain(path_); fs::remove(part, error) && part != made_;) part = part.parent_path();
   }
   if (kept.empty()) return;
-  const std::string_view first = kept.front();
-  std::cerr << "unfurl: warning: " << first.substr(0, first.rfind(".kept-"))
-            << " was not, or not any more, what unfurl wrote; it is kept as " << first;
+  const WrittenFiles::Kept& first = kept.front();
+  std::cerr << "unfurl: warning: " << first.name
+            << (first.owner.empty() ? " was not, or not any more, what unfurl wrote"
+                                    : " held what unfurl " + first.owner + " wrote")
+            << "; it is kept as " << first.aside;
   if (kept.size() > 1) std::cerr << ", and " << kept.size() - 1 << " more likewise";
   std::cerr << "\n";
 }

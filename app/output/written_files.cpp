@@ -274,6 +274,7 @@ void WrittenFiles::keep_aside(const std::string& name) {
 }
 
 void WrittenFiles::put_aside(const fs::path& target) {
+  const std::string owner = owner_of(name_of(target));
   for (int n = 1;; ++n) {
     const fs::path aside = target.string() + ".kept-" + std::to_string(n);
     struct stat status {};
@@ -283,7 +284,7 @@ void WrittenFiles::put_aside(const fs::path& target) {
       if (errno == EEXIST) continue;
       if (std::rename(target.c_str(), aside.c_str()) != 0) throw FileError(aside, errno);
     }
-    kept_.push_back(aside.string());
+    kept_.push_back({target.string(), owner, aside.string()});
     return;
   }
 }
@@ -314,6 +315,10 @@ bool WrittenFiles::ours(const std::string& name) const {
 std::string WrittenFiles::other_owner(const std::string& name) const {
   if (ours(name)) return "";
   const std::lock_guard lock(mutex_);
+  return owner_of(name);
+}
+
+std::string WrittenFiles::owner_of(const std::string& name) const {
   const auto found = lines_.find(name);
   const std::string sum = checksum_in(AT_FDCWD, (directory_ / name).string());
   if (found == lines_.end() || sum.empty()) return "";
@@ -353,7 +358,7 @@ void WrittenFiles::forget_missing() {
   if (std::erase_if(lines_, missing) > 0) write_anew();
 }
 
-std::vector<std::string> WrittenFiles::kept() const {
+std::vector<WrittenFiles::Kept> WrittenFiles::kept() const {
   const std::lock_guard lock(mutex_);
   return kept_;
 }

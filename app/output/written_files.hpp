@@ -58,7 +58,10 @@ class WrittenFiles final : public FileWatcher {
 
   const std::filesystem::path& directory() const { return directory_; }
   // What was kept aside, for a word to the person.
-  std::vector<std::string> kept() const;
+  struct Kept {
+    std::string name, owner, aside;  // paths; the verb whose result it was: empty: none's
+  };
+  std::vector<Kept> kept() const;
 
   // What became of the files that DIR's list names. Throws FileError where there is no list.
   struct Verdict {
@@ -92,6 +95,7 @@ class WrittenFiles final : public FileWatcher {
   void write_anew();
   bool grows_now(const std::string& name) const;
   bool known(const std::string& name, const std::string& checksum) const;
+  std::string owner_of(const std::string& name) const;  // of the bytes of DIR/name; empty: nobody's
   std::string name_of(const std::filesystem::path& target) const;
   void put_aside(const std::filesystem::path& target);
 
@@ -100,7 +104,7 @@ class WrittenFiles final : public FileWatcher {
   mutable std::mutex mutex_;
   Lines lines_;
   std::set<std::string> will_grow_, grown_;
-  std::vector<std::string> kept_;
+  std::vector<Kept> kept_;
   FileWatcher* before_ = nullptr;
 };
 
