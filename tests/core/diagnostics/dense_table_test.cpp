@@ -19,7 +19,7 @@ namespace dense_table_test {
 
 namespace {
 
-constexpr double spacing = 1e-3, step = 1e-2;
+constexpr double spacing = 1e-3;
 using Points = std::pair<std::vector<double>, std::vector<double>>;
 
 // offset + rise sin^2 3t over 1.2 s, rounded to multiples of `unit` from the offset.
