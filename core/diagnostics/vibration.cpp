@@ -280,11 +280,16 @@ Solved solve(const AtPose& at) {
   if (!(largest_magnitude_of(own_motions.values) < far_below * lowest)) return out;
   const VectorXd pulls = symmetric_eigenvalues(symmetric(Z.transpose() * at.geometric * Z));
   const double zero = nothing * std::max(at.pull, largest_magnitude_of(pulls));
+  out.vectors.leftCols(out.mechanism) = drawn * to_unit.transpose() * own_motions.vectors;
+  // A spring on what the motion does not change cancels in it, but for the rounding of its terms.
+  constexpr double digits = 64 * std::numeric_limits<double>::epsilon();
+  const MatrixXd terms = at.geometric.cwiseAbs();
   for (Index k = 0; k < out.mechanism; ++k) {
     const double square = own_motions.values[k];
-    out.squares[static_cast<std::size_t>(k)] = std::abs(square) <= zero ? 0.0 : square;
+    const VectorXd way = out.vectors.col(k).cwiseAbs();
+    const bool none = std::abs(square) <= std::max(zero, digits * way.dot(terms * way));
+    out.squares[static_cast<std::size_t>(k)] = none ? 0.0 : square;
   }
-  out.vectors.leftCols(out.mechanism) = drawn * to_unit.transpose() * own_motions.vectors;
   return out;
 }
 
