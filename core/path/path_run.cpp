@@ -23,7 +23,7 @@
 namespace unfurl {
 namespace {
 
-constexpr long most_switches = 100;  // at one time
+constexpr long most_switches = 100;  // at one time; in one step as many as in the full model (stepping)
 // Two solutions of one equation, next to a pose where it is nearly singular.
 constexpr double same_equations = 1e-7, rounded_sum = 1e-12;
 constexpr double beside = 1e-8;  // of a piece: there no rounding decides, and all else is as good as the same
@@ -293,7 +293,8 @@ class PathRun {
 
   void turn(std::size_t i) {
     if (motion_.t() > crowd_time_) crowd_time_ = motion_.t(), crowd_ = 0;
-    if (++crowd_ > most_switches)
+    if (motion_.t() >= step_end_) step_end_ = motion_.t() + options_.step, in_step_ = 0;
+    if (++crowd_ > most_switches || ++in_step_ > 1000 * (20 + 2 * static_cast<long>(sides_.size())))
       throw PathRefused("at t = " + seconds(motion_.t()) + ": stops or cables switch without end");
     append_here(true);
     if (sides_.is_stop(i)) return strike(i);
@@ -479,7 +480,8 @@ class PathRun {
   std::optional<std::size_t> held_;
   double held_slope_ = 0;  // of the gap along the path
   double crowd_time_ = -1;
-  long crowd_ = 0;
+  double step_end_ = 0;
+  long crowd_ = 0, in_step_ = 0;
   bool resting_ = false, stuck_ = false, ended_ = false;
 };
 

@@ -184,4 +184,26 @@ stages = 6
       }
 }
 
+// At 1 m/s there are step / gap rebounds in a step: 1e5, where the full model counts 24000 and holds, or 1e3,
+// after which the speed is what it was.
+TEST_CASE("rebounds without end are no motion for the path") {
+  const auto run = [](double gap) {
+    return run_on_path(slider(1, 1, R"([[constraints]]
+kind = "coordinate_stop"
+nodes = ["P"]
+direction = [1, 0, 0]
+min = 1
+max = )" + number(1 + gap) + R"(
+restitution = 1
+[solver]
+step = 0.01
+end_time = 0.01
+)"));
+  };
+  CHECK_THROWS_AS(run(1e-7), PathRefused);
+  const Simulation few = run(1e-5);
+  CHECK(few.events.size() >= 999);
+  CHECK(few.trajectory.node_velocities(few.trajectory.size() - 1).norm() == Approx(1.0));
+}
+
 }  // namespace path_jumps_test
