@@ -162,7 +162,7 @@ TEST_CASE("what holds a node twice over is unique as their sum") {
       // The rod from O to P may push both apart as it likes: across it all is told.
       CHECK_FALSE(unique(d, "O", i));
       CHECK_FALSE(unique(d, "P", i));
-      CHECK(reaction(d, "O", i).z() == Approx(3 * 9.81).margin(1e-6));
+      CHECK(reaction(d, "O", i).z() == Approx(3 * 9.81).epsilon(0).margin(1e-6));
     }
     const Diagnostics alone = diagnose(run_scene(custom + node("O", Vec3(0, 0, 0), "fixed = true") +
                                                      node("A", Vec3(0, 0, -1.5), "mass = 2") +
@@ -201,7 +201,7 @@ TEST_CASE("a support of a flat structure is unique, in the plane of all nodes or
     INFO(scene);
     for (std::size_t i = 0; i < d.t.size(); ++i) {
       CHECK(unique(d, "A", i));
-      CHECK(reaction(d, "A", i).y() == Approx(0).margin(1e-9));
+      CHECK(reaction(d, "A", i).y() == Approx(0).epsilon(0).margin(1e-9));
     }
   }
 }

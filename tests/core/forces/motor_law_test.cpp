@@ -72,14 +72,14 @@ TEST_CASE(
         return effort_of(f.motor, q[0] + by_q, v[0] + by_v, q[9] + by_z);
       };
       CHECK((s.value == q[0] && s.rate == v[0]));
-      CHECK(s.effort == Approx(effort(0, 0, 0)).margin(1e-14));
+      CHECK(s.effort == Approx(effort(0, 0, 0)).epsilon(0).margin(1e-14));
       // Its parts are linear: differences are right to round-off, and where they agree on both sides no bend
       // is near.
       const double h = 1e-5;
       const auto slope = [&](double a, double b, double c, double found) {
         const double up = (effort(h * a, h * b, h * c) - effort(0, 0, 0)) / h,
                      down = (effort(0, 0, 0) - effort(-h * a, -h * b, -h * c)) / h;
-        if (std::abs(up - down) < 1e-9) CHECK(found == Approx(up).margin(1e-9));
+        if (std::abs(up - down) < 1e-9) CHECK(found == Approx(up).epsilon(0).margin(1e-9));
       };
       slope(1, 0, 0, s.by_value), slope(0, 1, 0, s.by_rate), slope(0, 0, 1, s.by_integral);
       ++(std::abs(s.effort) == std::abs(f.motor.gear_ratio * f.motor.limit) ? cut : uncut);
@@ -204,8 +204,8 @@ TEST_CASE("a motor and the ghost of its controller: power and derivatives agree 
     for (Index r = 0; r < 12;
          ++r) {  // h^2 times third derivatives of order 10, 1e-16 / h; the ghost's by its mass
       const double near = r == 9 ? mass * 1e-7 : 1e-8;
-      CHECK(MatrixXd(K)(r, i) == Approx(k[r]).margin(near));
-      CHECK(MatrixXd(D)(r, i) == Approx(c[r]).margin(near));
+      CHECK(MatrixXd(K)(r, i) == Approx(k[r]).epsilon(0).margin(near));
+      CHECK(MatrixXd(D)(r, i) == Approx(c[r]).epsilon(0).margin(near));
     }
   }
 }

@@ -154,7 +154,7 @@ TEST_CASE("a pin on an elastic rod of moderate stiffness moves as an independent
     REQUIRE(run.status == RunStatus::completed);
     const VectorXd q = end_positions(run), v = run.trajectory.node_velocities(run.trajectory.size() - 1);
     CHECK(q.tail<3>().norm() == Approx(exact[0]).epsilon(1e-9));
-    CHECK(angle_of(q) == Approx(exact[1]).margin(1e-8));
+    CHECK(angle_of(q) == Approx(exact[1]).epsilon(0).margin(1e-8));
     CHECK(v.tail<3>().norm() == Approx(std::hypot(exact[2], exact[0] * exact[3])).epsilon(1e-8));
     const Diagnostics d = diagnose(run);
     CHECK(d.at("dissipated_J").values.back() == Approx(exact[4]).epsilon(1e-7));
@@ -221,7 +221,7 @@ TEST_CASE("a pin that rubs by its load turns a pendulum round and stops it where
     }
     if (rate_squared(0, th, 0, s) <= 0) break;  // it does not come so far: the last half swing
     th = inside;
-    CHECK(angle_of(run.trajectory.positions_at(event.t)) == Approx(th).margin(1e-7));
+    CHECK(angle_of(run.trajectory.positions_at(event.t)) == Approx(th).epsilon(0).margin(1e-7));
     s = -s;
     ++turns;
   }

@@ -79,8 +79,9 @@ TEST_CASE("dvm keeps the energy of an oscillator of any frequency") {
       INFO("s = " << stages << ", h omega = " << h_omega);
       REQUIRE(e.size() == 400);
       // Gauss collocation keeps quadratic energies. A step ends within 30 * 4 ulp of h k x, that is 3e-14 m
-      // of an amplitude of 1e-3 m; 400 of them add up to 1e-8 at the most.
-      for (const double share : e) REQUIRE(share == Approx(1.0).margin(1e-8));
+      // of an amplitude of 1e-3 m; 400 of them add up to 1e-8, and to more
+      // where h omega is 1e5 and tensions have lost digits of their own.
+      for (const double share : e) REQUIRE(share == Approx(1.0).epsilon(0).margin(1e-6));
     }
 }
 
@@ -128,7 +129,7 @@ end_time = 0.8
     const double order =
         std::log2((end(stages, coarse) - reference).norm() / (end(stages, coarse / 2) - reference).norm());
     INFO(stages << " stages");
-    CHECK(order == Approx(2 * stages - 2).margin(0.45));  // as in the orders of rigid mechanisms
+    CHECK(order == Approx(2 * stages - 2).epsilon(0).margin(0.45));  // as in the orders of rigid mechanisms
   }
 }
 
@@ -167,7 +168,7 @@ TEST_CASE("generalized_alpha keeps or takes the energy of an oscillator of any f
       // The recursion by hand (3 x 3, all rho_inf and h omega of the list): never above 1.004 of the start,
       // and where h omega >= 100 the rest of n steps is below n^4 rho_inf^(2 n).
       for (const double share : e) REQUIRE(share <= 1.005);
-      if (rho == 1.0) CHECK(e.back() == Approx(1.0).margin(1e-6));
+      if (rho == 1.0) CHECK(e.back() == Approx(1.0).epsilon(0).margin(1e-6));
       if (h_omega >= 100 && rho < 1) CHECK(e.back() <= 1e8 * std::pow(rho, 200) + 1e-20);
       if (h_omega > 1e4) continue;  // the rounding of k x alone is more than moves
       const auto j =
@@ -372,7 +373,7 @@ TEST_CASE("constraints at the ends of steps spend no short ones on stiff dampers
       number(c) + "\n[solver]\nconstraints_at = 'ends'\nstep = 0.01\nend_time = 0.3\n");
   REQUIRE(run.status == RunStatus::completed);
   CHECK(run.steps <= 31);
-  CHECK(end_of(run)[5] == Approx(-creep * 0.3).margin(0.01 * creep));
+  CHECK(end_of(run)[5] == Approx(-creep * 0.3).epsilon(0).margin(0.01 * creep));
 }
 
 TEST_CASE("constraints at the ends of steps take stiff springs too") {

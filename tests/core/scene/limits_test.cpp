@@ -42,7 +42,8 @@ std::vector<double> gaps(const std::string& entry) {
 
 void are(const std::vector<double>& found, const std::vector<double>& wanted) {
   REQUIRE(found.size() == wanted.size());
-  for (std::size_t i = 0; i < found.size(); ++i) CHECK(found[i] == Approx(wanted[i]).margin(1e-12));
+  for (std::size_t i = 0; i < found.size(); ++i)
+    CHECK(found[i] == Approx(wanted[i]).epsilon(0).margin(1e-12));
 }
 
 constexpr double degree = 3.14159265358979323846 / 180;

@@ -75,8 +75,8 @@ TEST_CASE("repeated entries stand once for every value") {
   for (std::size_t i = 0; i < 5; ++i) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(i) / 5;
     CHECK(scene.custom.nodes[i].name == "P" + std::to_string(i));
-    CHECK(scene.custom.nodes[i].position.x() == Approx(1.25 * std::cos(angle)).margin(1e-15));
-    CHECK(scene.custom.nodes[i].position.z() == Approx(1.25 * std::sin(angle)).margin(1e-15));
+    CHECK(scene.custom.nodes[i].position.x() == Approx(1.25 * std::cos(angle)).epsilon(0).margin(1e-15));
+    CHECK(scene.custom.nodes[i].position.z() == Approx(1.25 * std::sin(angle)).epsilon(0).margin(1e-15));
     CHECK(scene.custom.rods[i].nodes ==
           std::vector<std::string>{"P" + std::to_string(i), "P" + std::to_string((i + 1) % 5)});
     CHECK(scene.custom.rods[i].mass == static_cast<double>(i + 1) / 8);

@@ -111,7 +111,7 @@ TEST_CASE("a damped cable that is drawn in or paid out pulls from drawing taut u
     CHECK(events[1].kind == "slack");
     CHECK(events[1].name == "c is slack");
     // Chords of 1e-5 s on a pull whose bend is some 1e5 of it: 1e-9 of a swing of 0.14 s.
-    CHECK(events[1].t == Approx(truth.slack).margin(1e-9));
+    CHECK(events[1].t == Approx(truth.slack).epsilon(0).margin(1e-9));
     CHECK(run.trajectory.velocities_at(events[1].t)[3] == Approx(truth.velocity).epsilon(1e-6));
     REQUIRE(events.size() == 2);
     const Diagnostics d = diagnose(run);
@@ -165,7 +165,7 @@ TEST_CASE("a cable that is just straight at the start pulls from there on howeve
             "\nstages = " + std::to_string(stages) + "\n");
         REQUIRE(run.status == RunStatus::completed);
         // The pull lasts some 1 / omega, h omega of it up to 0.5: five stages are of order 8.
-        CHECK(end_positions(run)[3] == Approx(exact).margin(1e-7));
+        CHECK(end_positions(run)[3] == Approx(exact).epsilon(0).margin(2e-7));
         CHECK(std::ranges::count(run.events, "slack", &Event::kind) == 1);
       }
   }
