@@ -25,11 +25,42 @@ bool has_waves(const Structure& structure) {
                      [](const Force& f) { return f.kind == "bending"; });
 }
 
+// Cables are looked at when they begin to pull.
+bool has_springs(const Structure& structure) {
+  return std::ranges::any_of(structure.forces,
+                             [](const Force& f) { return f.stiffness > 0 && !f.one_sided; });
+}
+
+// Of a period, the longest step that leaves a swing's phase within 0.05 rad in each, and no less than those
+// above: n Gauss points are behind by (h w)^(2 n) n!^2 / ((2 n)! (2 n + 1)!) of the phase (the diagonal Pade
+// approximation of exp(i h w)).
+double swing_share_of(const SolverOptions& options) {
+  if (options.method != "dvm") return followed_share;
+  const double n = options.stages - 1.0;
+  const double logs = std::lgamma(2 * n + 1) + std::lgamma(2 * n + 2) - 2 * std::lgamma(n + 1);
+  return std::max(followed_share, std::exp((std::log(0.05 / (2 * pi)) + logs) / (2 * n)) / (2 * pi));
+}
+
+std::string spring_step_warning(double period, const SolverOptions& options) {
+  const double followed = period * swing_share_of(options);
+  if (!(options.step > followed)) return {};
+  std::ostringstream text;
+  text.precision(3);
+  text
+      << "the step of " << options.step << " s does not resolve the fastest swing on springs, " << period
+      << " s: where in it the structure is at a time, and what these springs pull with, is not to be "
+         "trusted; to follow it, solver.step = "
+      << followed
+      << "; to let it die out, damping of the spring or solver.method = \"generalized_alpha\" with rho_inf < "
+         "1";
+  return text.str();
+}
+
 }  // namespace
 
 double fastest_elastic_period(const Model& model, const State& state) {
   constexpr double endless = std::numeric_limits<double>::infinity();
-  if (!has_waves(model.structure)) return endless;
+  if (!has_waves(model.structure) && !has_springs(model.structure)) return endless;
   const System system = model.system.at(state);
   VectorXd q(system.coordinates());
   system.expand(state.z, q);
@@ -52,6 +83,8 @@ double fastest_elastic_period(const Model& model, const State& state) {
     x = a / a.lpNorm<Eigen::Infinity>();
     if (it > 8 && std::abs(square - before) <= settled_share * square) break;
   }
+  const double rate = -x.dot(by_w * x) / x.dot(system.mass() * x);
+  if (!has_waves(model.structure) && rate > 2 * std::sqrt(square)) return endless;  // it does not swing
   return 2 * pi / std::sqrt(square);
 }
 
@@ -59,6 +92,7 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
   const Method* method = find_method(options.method);
   if (!method || method->claims(options).damps) return {};
   const double period = fastest_elastic_period(model, start);
+  if (!has_waves(model.structure)) return spring_step_warning(period, options);
   if (!(options.step > followed_share * period)) return {};
   std::ostringstream text;
   text.precision(3);

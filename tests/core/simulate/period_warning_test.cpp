@@ -147,4 +147,80 @@ rods = [{nodes = ["W", "O"], mass = 0}, {nodes = ["O", "A"], mass = 0}]
         Approx(2 * pi * std::sqrt(0.4 / stiffness)).epsilon(1e-3));
 }
 
+// Two masses in line on two springs from a support: (k_1 + k_2 - m_1 w^2)(k_2 - m_2 w^2) = k_2^2.
+TEST_CASE("springs that a step does not follow are told with the period of the fastest") {
+  const double k1 = 3100, k2 = 1900, ma = 0.7, mb = 1.9;
+  const double a = ma * mb, b = ma * k2 + mb * (k1 + k2);
+  const double square = (b + std::sqrt(b * b - 4 * a * k1 * k2)) / (2 * a),
+               period = 2 * pi / std::sqrt(square);
+  const auto of = [&](double damping) {
+    return model_of(R"(
+[structure]
+kind = "custom"
+rods = []
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [0.5, 0, 0], mass = 0.7},
+         {name = "B", position = [1.3, 0, 0], mass = 1.9}]
+constraints = [{kind = "line", nodes = ["A", "B"], direction = [1, 0, 0]}]
+[[forces]]
+kind = "spring"
+nodes = ["O", "A"]
+stiffness = 3100
+damping = )" + exact_number(k1 * damping) +
+                    R"(
+[[forces]]
+kind = "spring"
+nodes = ["A", "B"]
+stiffness = 1900
+damping = )" + exact_number(k2 * damping) +
+                    "\n");
+  };
+  const auto said = [&](const Model& model, SolverOptions options) {
+    return elastic_step_warning(model, initial_state(model.structure, model.system).state, options);
+  };
+  SolverOptions options;
+  const auto springs = of(0);
+  for (const int stages : {2, 3, 4, 5}) {
+    INFO(stages);
+    options.stages = stages;
+    options.step = 10 * period;
+    const double followed = number_behind(said(*springs, options), "solver.step = ");
+    // A swing at such steps, by itself: cos(w t) is 0.05 rad behind in each period by the first term of that,
+    // up to twice what there is; with few points a quarter of a period is followed, whatever it is behind.
+    const double w = 2 * pi, step = followed / period;
+    const Simulation run = run_scene(
+        "[structure]\nkind = 'custom'\nrods = []\nnodes = [{name = 'O', position = [0, 0, 0], fixed = "
+        "true},\n"
+        "  {name = 'P', position = [1, 0, 0], mass = 1}]\n[[forces]]\nkind = 'spring'\nnodes = ['O', 'P']\n"
+        "stiffness = " +
+            exact_number(w * w) + "\nfree_length = 0.9\n",
+        {"solver.stages=" + std::to_string(stages), "solver.step=" + exact_number(step),
+         "solver.end_time=" + exact_number(8 * step)});
+    const std::size_t end = run.trajectory.size() - 1;
+    const double phase =
+        std::atan2(-run.trajectory.velocities(end)[3] / w, run.trajectory.positions(end)[3] - 0.9);
+    const double behind = std::abs(std::remainder(phase - 8 * step * w, 2 * pi)) / (8 * step);
+    INFO(step << " of a period: " << behind << " rad behind in each");
+    if (stages > 3) {
+      CHECK(behind <= 0.05);
+      CHECK(behind >= 0.02);
+    } else {
+      CHECK(step == Approx(0.25).epsilon(6e-3));
+    }
+    options.step = 0.99 * followed;
+    CHECK(said(*springs, options).empty());
+    options.step = 1.01 * followed;
+    const std::string text = said(*springs, options);
+    // Numbers have three digits.
+    CHECK(number_behind(text, "the step of ") == Approx(options.step).epsilon(6e-3));
+    CHECK(number_behind(text, "swing on springs, ") == Approx(period).epsilon(6e-3));
+    CHECK(number_behind(text, "solver.step = ") == Approx(followed).epsilon(6e-3));
+  }
+  // Damping in proportion, c = b k, of that mode: it does not swing from b w = 2 on.
+  options.step = 10 * period;
+  CHECK_FALSE(said(*of(1.95 / std::sqrt(square)), options).empty());
+  CHECK(said(*of(2.05 / std::sqrt(square)), options).empty());
+  options.method = "generalized_alpha";  // which lets them die out
+  CHECK(said(*springs, options).empty());
+}
+
 }  // namespace period_warning_test
