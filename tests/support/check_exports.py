@@ -102,10 +102,14 @@ assert node == names[0] and abs(float(length) - 3) < 1e-11, done.stdout  # a cho
 print("mat: equal to the tables in Octave, bit for bit")
 
 def dom(file, time):
-    return subprocess.run(
-        ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-         "--window-size=1000,700", "--virtual-time-budget=4000", "--dump-dom", f"file://{file}#t={time}&positions"],
-        capture_output=True, text=True, timeout=120).stdout
+    for _ in range(3):  # on a busy machine it may be told before the page's script has run
+        page = subprocess.run(
+            ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+             "--window-size=1000,700", "--virtual-time-budget=4000", "--dump-dom", f"file://{file}#t={time}&positions"],
+            capture_output=True, text=True, timeout=90).stdout
+        if "at pixel" in page:
+            break
+    return page
 
 
 # A browser: node positions that the page's own interpolation shows between two frames.
