@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "core/diagnostics/quintic.hpp"
@@ -263,6 +264,13 @@ Quadrature gauss_between(const std::vector<double>& points, double from, double 
   return out;
 }
 
+// Accelerations of the cubic through coordinates and rates.
+std::pair<VectorXd, VectorXd> cubic_ends(const State& a, const State& b) {
+  const double h = b.t - a.t;
+  const VectorXd mean = (b.z - a.z) / h;
+  return {(6 * mean - 4 * a.w - 2 * b.w) / h, (2 * a.w + 4 * b.w - 6 * mean) / h};
+}
+
 }  // namespace
 
 // What rods pull with that a step has found at its own points.
@@ -270,11 +278,24 @@ VectorXd EnergyMeter::between_stages(const State& b, double u) const {
   return b.stage_tension * Barycentric(own_.nodes).values(u);
 }
 
-// Accelerations that alternate from point to point of a table tell no motion of a whole step.
-EnergyMeter::Ends EnergyMeter::cubic_ends(const State& a, const State& b) const {
-  const double h = b.t - a.t;
-  const VectorXd mean = (b.z - a.z) / h;
-  return {a, b, (6 * mean - 4 * a.w - 2 * b.w) / h, (2 * a.w + 4 * b.w - 6 * mean) / h};
+// What the equations say is round-off over a small number next to a singular pose, as a flat ring of many
+// units is, and what of forces that jump at an end may be of its other side. Where a quartic through all the
+// rest tells grossly another end, that one is taken; where both ends are as far off what rates tell, the
+// cubic.
+void EnergyMeter::smooth_ends(const State& a, const State& b) {
+  constexpr double gross = 0.25;  // of the largest; a smooth motion is off by order 3 in the step
+  const auto [by_rates_a, by_rates_b] = cubic_ends(a, b);
+  const VectorXd off_a = before_.acceleration - by_rates_a, off_b = after_.acceleration - by_rates_b;
+  const double largest = std::max(by_rates_a.norm(), by_rates_b.norm());
+  by_a_ = before_.acceleration;
+  by_b_ = after_.acceleration;
+  if (before_.known && after_.known && (off_b - off_a).norm() <= gross * largest) return;
+  const double far_a = before_.known ? off_a.norm() : INFINITY,
+               far_b = after_.known ? off_b.norm() : INFINITY;
+  const VectorXd none = VectorXd::Zero(off_a.size());
+  const VectorXd& both = std::min(far_a, far_b) > largest ? none : far_a < far_b ? off_a : off_b;
+  by_a_ = by_rates_a + both;
+  by_b_ = by_rates_b + both;
 }
 
 void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
@@ -296,9 +317,13 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   const bool stiff = h * fastest > stiff_at;
   const std::vector<double> points_inside = drives_ ? tables_.points_within(a.t, b.t) : std::vector<double>();
   const bool split = !points_inside.empty();
-  const Ends trusted = stiff ? trusted_ends(a, b) : split ? cubic_ends(a, b) : Ends{};
-  const Quintic motion = stiff || split ? Quintic{trusted.a, trusted.b, trusted.by_a, trusted.by_b, h}
-                                        : Quintic{a, b, before_.acceleration, after_.acceleration, h};
+  const Ends trusted = stiff ? trusted_ends(a, b) : Ends{};
+  if (split)  // accelerations that alternate from point to point of a table tell no motion of a whole step
+    std::tie(by_a_, by_b_) = cubic_ends(a, b);
+  else if (!stiff)
+    smooth_ends(a, b);
+  const Quintic motion =
+      stiff ? Quintic{trusted.a, trusted.b, trusted.by_a, trusted.by_b, h} : Quintic{a, b, by_a_, by_b_, h};
   static const Quadrature gauss = gauss_legendre(3), lobatto = gauss_lobatto(4);
   const Quadrature parts = split ? gauss_between(points_inside, a.t, b.t) : Quadrature();
   const double others = load_work + drive_work;

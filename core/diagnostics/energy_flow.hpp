@@ -67,7 +67,7 @@ class EnergyMeter {
     VectorXd by_a = {}, by_b = {};
   };
   Ends trusted_ends(const State& a, const State& b);
-  Ends cubic_ends(const State& a, const State& b) const;
+  void smooth_ends(const State& a, const State& b);  // finds by_a_ and by_b_
   VectorXd between_stages(const State& b, double u) const;
   bool gone_ = false, rings_ = false;  // in the last step of these, the rates of something
   double most_power_ = 0;              // of dampers there [W]
@@ -81,7 +81,8 @@ class EnergyMeter {
   bool rods_apart_ = false;  // in this step, from what is said of dampers otherwise
   std::unique_ptr<Index1> index1_;
   SolvedPoint before_, after_;
-  bool fresh_ = false;  // after_ is of the last state, and velocities have not changed since
+  VectorXd by_a_, by_b_;  // accelerations at the ends of the step, as its motion has them
+  bool fresh_ = false;    // after_ is of the last state, and velocities have not changed since
   VectorXd q_, v_, unused_, lambda_, target_rate_, stiff_rate_;
   ForceDerivatives derivatives_;
   SparseRows damping_;                 // of them, by rates
