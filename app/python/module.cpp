@@ -318,7 +318,10 @@ class SteppedScene {
     return running() && stepper_.time() < t;
   }
   const Trajectory& trajectory() const { return stepper_.run().trajectory; }
-  bool running() const { return goes_on_ && stepper_.time() < stepper_.run().options.end_time; }
+  bool running() const {
+    const Simulation& run = stepper_.run();
+    return goes_on_ && run.status != RunStatus::failed && stepper_.time() < run.options.end_time;
+  }
   std::vector<std::string> all_warnings() const {
     std::vector<std::string> said = idle();
     said.insert(said.end(), said_.begin(), said_.end());

@@ -364,6 +364,13 @@ void Stepper::Loop::warn_of_cable(std::size_t i, const State& state) {
   if (!told.empty()) run_.warnings.push_back(std::move(told));
 }
 
+bool Stepper::Loop::stop_watching() {
+  unwatched_until_ = target_;
+  warn_once(": stops, cables or friction switch without end; what they do in this step is not located");
+  if (sides_.relax_laws()) set_model(sides_.model(*base_), in_base(now()), true);
+  return true;
+}
+
 Stepper::Stepper(std::shared_ptr<const Model> model, const SolverOptions& options)
     : Stepper(model, options, initial_state(model->structure, model->system).state) {}
 

@@ -37,8 +37,9 @@ class Stepper {
   const Simulation& run() const { return run_; }  // all so far
   Simulation take() { return std::move(run_); }   // the same, for good: the stepper is of no use after it
   // A force [N] on a solved node from now on, in place of the one that was set before, beside what the scene
-  // has: what a controller does between steps. Its work is among that of the loads. The method begins anew,
-  // as after any jump of a load; a force that stays the same costs nothing.
+  // has: what a controller does between steps. What holds and gives way to it has given way at once. Its work
+  // is among that of the loads. The method begins anew, as after any jump of a load; a force that stays the
+  // same costs nothing.
   void set_force(int node, const Vec3& force);
   void stop();  // ends the run as stopped by the user
 

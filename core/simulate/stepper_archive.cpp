@@ -57,6 +57,7 @@ void Stepper::Loop::forget() {
   if (control_) last_step_ = control_->last();
   control_.reset();
   controlled_ = nullptr;
+  pushed_.reset();
   model_changed();
 }
 

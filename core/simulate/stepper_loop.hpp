@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/integrators/dvm.hpp"
 #include "core/integrators/integrator.hpp"
@@ -17,7 +19,6 @@
 #include "core/simulate/measured_event.hpp"
 #include "core/simulate/mode_change.hpp"
 #include "core/simulate/one_sided.hpp"
-#include "core/simulate/pushed_model.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "core/simulate/step_control.hpp"
@@ -97,18 +98,7 @@ class Stepper::Loop {
     return !ended_;
   }
 
-  void set_force(int node, const Vec3& force) {
-    const auto pushed = pushed_model(*base_, run_.trajectory.structure().loads.size(), node, force);
-    if (ended_ || !pushed) return;
-    base_ = pushed;
-    // Of several that are set at one time, all act at once.
-    const bool begun = !std::exchange(pushed_, true) && (run_.trajectory.size() > 1 || new_ > 0);
-    if (sides_.any_active())
-      set_model(sides_.model(*base_), in_base(now()), begun);
-    else
-      enter(base_, State(now()), begun);
-  }
-
+  void set_force(int node, const Vec3& force);
   void end() { ended_ = true; }
   std::size_t first_new() const { return new_; }
   double start() const { return start_; }
@@ -141,7 +131,7 @@ class Stepper::Loop {
   bool go(const TimeGrid::Target& target) try {
     target_ = target.t;
     edge_ = target.edge;
-    pushed_ = false;
+    pushed_.reset();
     double h = target.h;
     in_step_ = 0;
     while (now().t < target_) {
@@ -158,13 +148,8 @@ class Stepper::Loop {
 
   // The rest of the step, of size h, or what comes before the first event on it. False where the run ends.
   bool part(double h) {
-    if (watched()) {
-      begin();
-      std::vector<std::size_t> over;
-      for (Index i = 0; i < begin_.margins.size(); ++i)
-        if (begin_.margins[i] < -1) over.push_back(static_cast<std::size_t>(i));
-      if (!over.empty()) return act(over);
-    }
+    if (watched())
+      if (const std::vector<std::size_t> over = passed(); !over.empty()) return act(over);
     Probe to{.at = h, .state = now()};
     to.report = take_step(*integrator_, to.state, h);
     if (to.report.weak_end) settle_in_pose(to, h);
@@ -266,6 +251,15 @@ class Stepper::Loop {
     sides_.touch(system(), now());
     sides_.measure(model(), now(), true, begin_);
     have_begin_ = true;
+  }
+
+  // What has no margin left at the present state.
+  std::vector<std::size_t> passed() {
+    begin();
+    std::vector<std::size_t> over;
+    for (Index i = 0; i < begin_.margins.size(); ++i)
+      if (begin_.margins[i] < -1) over.push_back(static_cast<std::size_t>(i));
+    return over;
   }
 
   // Before the deployed pose (-1), behind it (1), or at it, where friction turns round that is none of it.
@@ -399,12 +393,7 @@ class Stepper::Loop {
     return apply(change_modes(sides_, *base_, in_base(now()), touched, {}, 0.0, true));
   }
 
-  bool stop_watching() {
-    unwatched_until_ = target_;
-    warn_once(": stops, cables or friction switch without end; what they do in this step is not located");
-    if (sides_.relax_laws()) set_model(sides_.model(*base_), in_base(now()), true);
-    return true;
-  }
+  bool stop_watching();
 
   // Goes on from a state in the coordinates of the base with another model of the same structure.
   void set_model(const std::shared_ptr<const Model>& next, const State& from, bool handed_over) {
@@ -418,6 +407,7 @@ class Stepper::Loop {
     model_changed();
   }
 
+  void enter_pushed();
   void lock_held();
   void forget();
   void archive_models(Archive& archive);
@@ -481,8 +471,17 @@ class Stepper::Loop {
   std::unique_ptr<Integrator> integrator_, probing_;
   std::optional<StepControl> control_;
   const System* controlled_ = nullptr;
-  Probe begin_;                               // the present state
-  bool have_begin_ = false, pushed_ = false;  // pushed: since the last step
+  Probe begin_;  // the present state
+  bool have_begin_ = false;
+  // What the first force that was set since the last step found.
+  struct Pushed {
+    State from;         // in coordinates of the base
+    std::string sides;  // archived
+    std::size_t states, events, warnings;
+    double crowd_time;
+    long crowd;
+  };
+  std::optional<Pushed> pushed_;
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
   bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false;

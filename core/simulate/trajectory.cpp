@@ -9,6 +9,7 @@ Trajectory::Trajectory(std::shared_ptr<const Model> model, const SolverOptions& 
     : models_{{0, std::move(model)}}, dense_(std::make_shared<DenseOutput>(options)) {}
 
 void Trajectory::change_model(std::shared_ptr<const Model> model) {
+  while (models_.size() > 1 && models_.back().first > size()) models_.pop_back();  // their states are gone
   if (models_.size() > 1 && models_.back().first == size())
     models_.back().model = std::move(model);
   else

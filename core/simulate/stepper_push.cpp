@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Forces that are set between steps, and what gives way to them.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/math/factors.hpp"
+#include "core/simulate/pushed_model.hpp"
+#include "core/simulate/stepper_loop.hpp"
+#include "core/text/archive.hpp"
+
+namespace unfurl {
+
+// Of several that are set at one time all act at once: what gives way is found anew from where the first of
+// them found it, and what was gone through on the way is none of the motion. Where no modes are found the
+// next step says so, if the forces are still these.
+void Stepper::Loop::set_force(int node, const Vec3& force) try {
+  const auto pushed = pushed_model(*base_, run_.trajectory.structure().loads.size(), node, force);
+  if (ended_ || !pushed) return;
+  if (!pushed_) {
+    const bool first_of_all = run_.trajectory.size() == 1 && new_ == 0;  // it goes
+    Archive sides;
+    sides_.archive(sides);
+    pushed_ = Pushed{in_base(now()),
+                     sides.bytes(),
+                     run_.trajectory.size() - (first_of_all ? 1 : 0),
+                     run_.events.size(),
+                     run_.warnings.size(),
+                     crowd_time_,
+                     crowd_};
+  }
+  base_ = pushed;
+  auto told = std::exchange(on_step, {});
+  enter_pushed();
+  while (watched() && crowd_ < stepping::most_switches) {
+    const std::vector<std::size_t> over = passed();
+    if (over.empty()) break;
+    if (act(over)) continue;
+    run_.status = RunStatus::completed;
+    run_.message.clear();
+    enter_pushed();
+    break;
+  }
+  on_step = std::move(told);
+  State last = now();
+  while (run_.trajectory.size() > pushed_->states) run_.trajectory.pop_back();
+  run_.trajectory.change_model(present_);
+  append(std::move(last), StepReport{});
+} catch (const CannotFactorise& error) {
+  ended_ = true, fail(error.what());
+}
+
+// The present time with the forces as they are, and what holds as the first of them found it.
+void Stepper::Loop::enter_pushed() {
+  Archive sides(pushed_->sides);
+  sides_.archive(sides);
+  run_.events.resize(pushed_->events);
+  run_.warnings.resize(pushed_->warnings);
+  crowd_time_ = pushed_->crowd_time;
+  crowd_ = pushed_->crowd;
+  in_step_ = 0;
+  if (sides_.any_active())
+    set_model(sides_.model(*base_), pushed_->from, true);
+  else
+    enter(base_, pushed_->from, true);
+}
+
+}  // namespace unfurl
