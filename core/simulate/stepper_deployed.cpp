@@ -154,6 +154,29 @@ double Stepper::Loop::uneven(const State& event) {
   return most / reference_length(base_->structure);
 }
 
+// Before the deployed pose (-1), behind it (1), or at it, where friction turns round that is none of it. What
+// is passed neither in that pose nor on the way there, but for rounding, comes behind it.
+int Stepper::Loop::side(const Crossing& crossing, const State& event, double h) {
+  const double from = crossing.probe.at, left = event.t - now().t - from;
+  if (sides_.only_friction(crossing.which))
+    return std::abs(left) < stepping::straight * h ? 0 : (left > 0 ? -1 : 1);
+  if (left <= 0) return 1;
+  const auto is_passed = [&](const State& state) {
+    Probe there;
+    sides_.measure(model(), state, true, there);
+    return std::ranges::any_of(crossing.which,
+                               [&](std::size_t i) { return there.margins[static_cast<Index>(i)] < -1; });
+  };
+  if (is_passed(event)) return -1;
+  const auto integrator = fresh_integrator();
+  for (const double share : {0.5, 0.25, 0.75}) {
+    State between = now();
+    integrator->restart();
+    if (integrator->step(between, from + share * left).ok() && is_passed(between)) return -1;
+  }
+  return 1;
+}
+
 bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
   constexpr double even = 1e-3;
   deployed_ = true;

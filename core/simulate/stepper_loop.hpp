@@ -262,21 +262,7 @@ class Stepper::Loop {
     return over;
   }
 
-  // Before the deployed pose (-1), behind it (1), or at it, where friction turns round that is none of it.
-  // What is not passed in that pose, but for rounding, comes behind it.
-  int side(const Crossing& crossing, const State& event, double h) {
-    const double t = now().t + crossing.probe.at - event.t;
-    if (sides_.only_friction(crossing.which))
-      return std::abs(t) < stepping::straight * h ? 0 : (t < 0 ? -1 : 1);
-    if (t >= 0) return 1;
-    Probe there;
-    sides_.measure(model(), event, true, there);
-    return std::ranges::any_of(crossing.which,
-                               [&](std::size_t i) { return there.margins[static_cast<Index>(i)] < -1; })
-               ? -1
-               : 1;
-  }
-
+  int side(const Crossing& crossing, const State& event, double h);
   std::optional<Crossing> find_crossing(Probe& to, double h);
   MatrixXd between(const Probe& to, bool cut_off);
   bool inside(const Probe& to, double share, State& state);
