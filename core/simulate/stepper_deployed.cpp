@@ -155,7 +155,8 @@ double Stepper::Loop::uneven(const State& event) {
 }
 
 // Before the deployed pose (-1), behind it (1), or at it, where friction turns round that is none of it. What
-// is passed neither in that pose nor on the way there, but for rounding, comes behind it.
+// is passed neither in that pose nor on the way there, but for rounding, comes behind it; the time of the
+// pose may be later than that of the step through it.
 int Stepper::Loop::side(const Crossing& crossing, const State& event, double h) {
   const double from = crossing.probe.at, left = event.t - now().t - from;
   if (sides_.only_friction(crossing.which))
@@ -172,7 +173,8 @@ int Stepper::Loop::side(const Crossing& crossing, const State& event, double h) 
   for (const double share : {0.5, 0.25, 0.75}) {
     State between = now();
     integrator->restart();
-    if (integrator->step(between, from + share * left).ok() && is_passed(between)) return -1;
+    if (integrator->step(between, from + share * left).ok() && fold(between) > 0 && is_passed(between))
+      return -1;
   }
   return 1;
 }
