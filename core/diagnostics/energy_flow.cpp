@@ -286,12 +286,16 @@ void EnergyMeter::smooth_ends(const State& a, const State& b) {
   constexpr double gross = 0.25;  // of the largest; a smooth motion is off by order 3 in the step
   const auto [by_rates_a, by_rates_b] = cubic_ends(a, b);
   const VectorXd off_a = before_.acceleration - by_rates_a, off_b = after_.acceleration - by_rates_b;
-  const double largest = std::max(by_rates_a.norm(), by_rates_b.norm());
+  // Coordinates may be lengths, angles, or what a controller sums up, with which nothing moves.
+  const VectorXd m = system_.moving_mass();
+  const auto size = [&m](const VectorXd& x) {
+    return m.array().isInf().select(0.0, m.array() * x.array().square()).sum();
+  };
+  const double largest = std::max(size(by_rates_a), size(by_rates_b));
   by_a_ = before_.acceleration;
   by_b_ = after_.acceleration;
-  if (before_.known && after_.known && (off_b - off_a).norm() <= gross * largest) return;
-  const double far_a = before_.known ? off_a.norm() : INFINITY,
-               far_b = after_.known ? off_b.norm() : INFINITY;
+  if (before_.known && after_.known && size(off_b - off_a) <= gross * gross * largest) return;
+  const double far_a = before_.known ? size(off_a) : INFINITY, far_b = after_.known ? size(off_b) : INFINITY;
   const VectorXd none = VectorXd::Zero(off_a.size());
   const VectorXd& both = std::min(far_a, far_b) > largest ? none : far_a < far_b ? off_a : off_b;
   by_a_ = by_rates_a + both;
