@@ -125,7 +125,7 @@ void add_members(const ExportJob& job, Page& page) {
     const auto source = static_cast<std::size_t>(copy.source);
     const Rod& rod = structure.rods[source];
     const auto [group, added] = groups.try_emplace(rod.group, groups.size());
-    if (added) page["groups"].push_back(rod.group.empty() ? "rods" : rod.group);
+    if (added) page["groups"].push_back(rod.group);
     page["rods"].push_back(
         {copy.a, copy.b, group->second, rod.radius > 0 ? rod.radius : rod.pinned_length() / 60, copy.name});
     page["unique"].push_back(

@@ -65,6 +65,10 @@ bool gives_in_motion(const RodMaterial& all, const CustomRod& rod) {
   return rod.elastic.value_or(all.rod_model == "elastic");
 }
 
+std::string group_name(const CustomRod& rod) {
+  return rod.group.empty() ? CustomRod{}.group : rod.group;
+}
+
 std::string rod_name(const CustomRod& rod) {
   if (!rod.name.empty() || rod.nodes.size() != 2) return rod.name;
   return rod.nodes[0] + "-" + rod.nodes[1];
@@ -94,7 +98,7 @@ Structure build_custom(const CustomSpec& spec) {
     const double length = entry.length > 0.0 ? entry.length : apart;
     const double material = entry.free_length > 0.0 ? entry.free_length : length;
     structure.rods.push_back(
-        {rod_name(entry), a, b, rod_mass(entry, material), length, entry.group, 0.0, 1.0});
+        {rod_name(entry), a, b, rod_mass(entry, material), length, group_name(entry), 0.0, 1.0});
     if (entry.area > 0.0) give_section(spec, entry, structure.rods.back());
     segments.push_back(segments_of(spec.material, entry, structure.rods.back()));
   }

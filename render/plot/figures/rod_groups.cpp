@@ -14,7 +14,7 @@ std::vector<RodGroup> rod_groups(const Structure& structure) {
     const std::string& name = structure.rods[r].group;
     auto g =
         std::find_if(groups.begin(), groups.end(), [&](const RodGroup& have) { return have.name == name; });
-    if (g == groups.end()) g = groups.insert(g, {name.empty() ? "rod" : name, {}, 0, 0});
+    if (g == groups.end()) g = groups.insert(g, {name, {}, 0, 0});
     g->rods.push_back(static_cast<int>(r));
     group_of[r] = static_cast<std::size_t>(g - groups.begin());
   }
@@ -27,8 +27,7 @@ std::vector<RodGroup> rod_groups(const Structure& structure) {
   int next = first_group_color;
   for (std::size_t r = 0; r < shown.size(); ++r)
     if (int& color = groups[group_of[r]].color; shown[r] && color == 0) color = next++;
-  for (RodGroup& group : groups)
-    if (group.color == 0) group.color = next++;
+  std::erase_if(groups, [](const RodGroup& group) { return group.shown == 0; });
   return groups;
 }
 

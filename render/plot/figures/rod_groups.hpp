@@ -15,7 +15,7 @@ struct RodGroup {
   int color = 0;          // of the palette
 };
 
-// By Rod::group, in the order of first appearance.
+// By Rod::group, in the order of first appearance; without those that the whole structure does not show.
 std::vector<RodGroup> rod_groups(const Structure& structure);
 
 }  // namespace unfurl

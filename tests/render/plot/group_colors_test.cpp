@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
+#include "render/plot/figures.hpp"
 #include "render/plot/figures/rod_groups.hpp"
 #include "render/plot/style.hpp"
 #include "render/scene/appearance.hpp"
 #include "render/scene/look.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -34,16 +38,45 @@ TEST_CASE("a group of rods has the colour in figures that pictures on a pale gro
     const Appearance looks = appearance_of(model->structure, 1);
     const std::vector<RodGroup> groups = rod_groups(model->structure);
     several += looks.groups.size() > 1;
+    CHECK(groups.size() == looks.groups.size());
     for (const char* ground : {"studio", "print", "blueprint"})
       for (std::size_t i = 0; i < looks.groups.size(); ++i) {
         INFO(kind << ", " << ground << ": " << looks.groups[i]);
-        const std::string shown = looks.groups[i].empty() ? "rod" : looks.groups[i];
-        const auto group = std::ranges::find(groups, shown, &RodGroup::name);
+        const auto group = std::ranges::find(groups, looks.groups[i], &RodGroup::name);
         REQUIRE(group != groups.end());
         CHECK(apart(find_look(ground)->group(i), palette(group->color)) <= 0.02);
       }
   }
   CHECK(several >= 3);
+}
+
+TEST_CASE("the figure of poses names the groups of rods that it draws", "[figures]") {
+  const std::string poses = "solver.step = 0.01\nsolver.end_time = 0.05\nstructure.kind = ";
+  using Names = std::vector<std::string>;
+  const auto named = [&](const char* kind) {
+    const Simulation run = testing::run_scene(poses + kind);
+    Names names;
+    const Figure figure = find_figure("poses")->make(run, diagnose(run));
+    for (const Curve& curve : figure.panels.front().curves) names.push_back(curve.label);
+    return names;
+  };
+  // Their braces are what makes bodies of rods, and not shown.
+  CHECK(named("'hoberman'\n") == Names{"left element", "right element"});
+  CHECK(named("'bricard'\n") == Names{"bar", "hinge pin"});
+}
+
+// As a list of rods in a CSV file has it with an empty cell.
+TEST_CASE("rods whose group is an empty text are of the group that rods without one are of") {
+  const auto model = testing::model_of(
+      "structure.kind = 'custom'\nstructure.nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, "
+      "{name = 'B', position = [1, 0, 0]}, {name = 'C', position = [2, 0, 0]}, {name = 'D', position = [3, "
+      "0, 0]}]\nstructure.rods = [{nodes = ['A', 'B'], mass = 1, group = ''}, {nodes = ['B', 'C'], mass = 1, "
+      "group = ''}, {nodes = ['C', 'D'], mass = 1}]\n");
+  const std::vector<RodGroup> groups = rod_groups(model->structure);
+  REQUIRE(groups.size() == 1);
+  CHECK(groups[0].name == "rod");
+  CHECK(groups[0].rods == std::vector<int>{0, 1, 2});
+  CHECK(appearance_of(model->structure, 1).groups == std::vector<std::string>{"rod"});
 }
 
 TEST_CASE("colours of groups stand out from white, and the first eighteen are different ones") {
