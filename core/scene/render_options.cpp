@@ -55,7 +55,7 @@ std::vector<Key> overlay_keys() {
       {boolean_param("title", false, "the scene's title"), &R::title},
       {boolean_param("time", false, "time and deployed fraction"), &R::time},
       {boolean_param("legend", false, "what the colours mean"), &R::legend},
-      {boolean_param("loads", false, "forces as arrows"), &R::loads},
+      {boolean_param("loads", false, "constant forces ([[loads]]) as arrows"), &R::loads},
       {boolean_param("method", false, "the method and its step"), &R::method},
       {boolean_param("errors", false, "largest constraint error and energy imbalance so far"), &R::errors},
       {boolean_param("scale_bar", false, "a length to compare with"), &R::scale_bar},
