@@ -123,6 +123,18 @@ worst = max(np.abs(np.array(shown[name], dtype=float) - states[i, k, :3]).max() 
 assert worst < 1e-4, worst
 print(f"html: in Chromium, nodes within {worst:.1e} m")
 
+# Marks of events stand below the slider's thumb at their times; browsers have thumbs 16 pixels wide.
+with open(f"{out}/viewer.html") as page, open(f"{out}/marks.html", "w") as probe:
+    probe.write(page.read().replace("</body>", """<p id="probe"></p><script>
+const track = $("scrub").getBoundingClientRect(), off = data.events.map(({ t }) => {
+  const at = track.left + 8 + (track.width - 16) * (t - data.start) / span;
+  return Math.min(...marks.map(({ mark }) => mark.getBoundingClientRect()).map(r => Math.min(Math.abs(r.left + 1 - at), Math.abs(r.right - 1 - at)))); });
+$("probe").textContent = off.length + " marks off by " + Math.max(...off);
+</script></body>"""))
+marks = re.search(r">(\d+) marks off by ([-0-9.e]+)<", dom(f"{out}/marks.html", 4.5))
+assert marks and int(marks[1]) > 0 and float(marks[2]) <= 2, marks
+print("html: marks of events are below the slider at their times")
+
 # What stands upright is whole in the first view, two thirds of the window high at most.
 subprocess.run([sys.argv[1], "run", "scissor_mast", "-o", f"{out}/mast", "--quiet", "--export", "html"], check=True)
 pixels = np.array(re.findall(r"at pixel ([-0-9.]+), ([-0-9.]+)", dom(f"{out}/mast/viewer.html", 0.947)), dtype=float)
