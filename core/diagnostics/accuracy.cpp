@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <sstream>
+#include <string>
+#include <utility>
 
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/driven_tables.hpp"
@@ -295,30 +298,45 @@ std::size_t first_unstretched(const Simulation& run, const Diagnostics& d) {
   return d.t.size();
 }
 
+double turning_rate(const Trajectory& trajectory, std::size_t i) {
+  const VectorXd v = trajectory.node_velocities(i);
+  double most = 0;
+  for (const Rod& rod : trajectory.structure().rods)
+    most = std::max(most, (v.segment<3>(3 * rod.b) - v.segment<3>(3 * rod.a)).norm() / rod.length);
+  return most;
+}
+
+double stretch_share(const Trajectory& trajectory, std::size_t i) {
+  const VectorXd* u = trajectory.stretch(i);
+  if (!u || u->size() == 0) return 0;
+  const VectorXd q = trajectory.node_positions(i);
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Rod& rod : trajectory.structure().rods)
+    for (const int node : {rod.a, rod.b}) {
+      low = low.cwiseMin(q.segment<3>(3 * node));
+      high = high.cwiseMax(q.segment<3>(3 * node));
+    }
+  return u->lpNorm<Eigen::Infinity>() / (high - low).maxCoeff();
+}
+
+std::pair<double, std::size_t> largest_of_states(const Trajectory& trajectory, StateSize size) {
+  std::pair<double, std::size_t> most{0, 0};
+  for (std::size_t i = 0; i < trajectory.size(); ++i)
+    if (const double x = size(trajectory, i); x > most.first) most = {x, i};
+  return most;
+}
+
 namespace {
 
 // What quasi-static rods give is of first order: what it turns of the structure changes no force. By the
 // elastica a cantilever's tip is told too far by 1 % at a tenth of its length, 10 % at a third, 66 % at one.
 std::string words_of_large_stretch(const Trajectory& trajectory) {
   constexpr double large = 0.1;
-  double most = 0, at = 0, moved = 0;
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const VectorXd* u = trajectory.stretch(i);
-    if (!u || u->size() == 0) continue;
-    const VectorXd q = trajectory.node_positions(i);
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-    for (const Rod& rod : trajectory.structure().rods)
-      for (const int node : {rod.a, rod.b}) {
-        low = low.cwiseMin(q.segment<3>(3 * node));
-        high = high.cwiseMax(q.segment<3>(3 * node));
-      }
-    const double wide = (high - low).maxCoeff(), far = u->lpNorm<Eigen::Infinity>();
-    if (far > most * wide) most = far / wide, at = trajectory.time(i), moved = far;
-  }
+  const auto [most, i] = largest_of_states(trajectory, stretch_share);
   if (!(most > large)) return "";
   std::ostringstream text;
-  text << "quasi-static rods move nodes by up to " << moved << " m (t = " << at << " s), "
-       << percent_of(most, 1)
+  text << "quasi-static rods move nodes by up to " << trajectory.stretch(i)->lpNorm<Eigen::Infinity>()
+       << " m (t = " << trajectory.time(i) << " s), " << percent_of(most, 1)
        << " of the structure's size: that is of first order, and no small displacement; "
           "structure.rod_model = \"elastic\" finds it";
   return text.str();
@@ -336,20 +354,13 @@ double followed_turn(const SolverOptions& options) {
 std::string words_of_turns(const Simulation& run) {
   const SolverOptions& options = run.options;
   if (options.adaptive || options.tolerance > 0 || run.solved_as.name == "path") return "";
-  double most = 0, at = 0;
-  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
-    const VectorXd v = run.trajectory.node_velocities(i);
-    for (const Rod& rod : run.trajectory.structure().rods)
-      if (const double rate = (v.segment<3>(3 * rod.b) - v.segment<3>(3 * rod.a)).norm() / rod.length;
-          rate > most)
-        most = rate, at = run.trajectory.time(i);
-  }
+  const auto [most, i] = largest_of_states(run.trajectory, turning_rate);
   const double followed = followed_turn(options);
   if (!(most * options.step > followed)) return "";
   std::ostringstream text;
   text.precision(3);
   text << "rods turn by up to " << most * options.step << " rad within a step of " << options.step
-       << " s (t = " << at
+       << " s (t = " << run.trajectory.time(i)
        << " s), which the steps do not follow, however well the energy is kept: take solver.step <= "
        << followed / most << (options.method == "dvm" ? ", or more solver.stages" : "")
        << ", or solver.adaptive = true";

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
@@ -52,6 +53,14 @@ Rise rise_on_the_way(const Simulation& run, const Diagnostics& diagnostics);
 // The first state of quasi-static rods that is shown without what they give, though they bear something; the
 // number of states where there is none.
 std::size_t first_unstretched(const Simulation& run, const Diagnostics& diagnostics);
+
+// What warnings of a run look for the largest of: how fast a rod turns [rad/s]; how far quasi-static rods
+// move a node, as a share of the structure's size.
+using StateSize = double (*)(const Trajectory& trajectory, std::size_t i);
+double turning_rate(const Trajectory& trajectory, std::size_t i);
+double stretch_share(const Trajectory& trajectory, std::size_t i);
+// With its state; 0 of the first one where there is none.
+std::pair<double, std::size_t> largest_of_states(const Trajectory& trajectory, StateSize size);
 
 // What was said while it ran, and that. Without diagnostics (of no state) the former alone.
 std::vector<std::string> warnings_of(const Simulation& run, const Diagnostics& diagnostics);

@@ -325,10 +325,9 @@ Digest RunDigest::thinned(const Digest& all) const {
   if (const std::size_t first = first_unstretched(all.run, d); first < d.t.size()) rows.insert(first);
   add_rods(trajectory.structure(), d, rows);
   add_rise(d.at("energy_balance_J").values, rows);
-  std::size_t quickest = 0;
-  double speed = -1;
-  for (std::size_t i = 0; i < trajectory.size(); ++i)
-    if (const double v = fastest(trajectory, i); v > speed) speed = v, quickest = i;
+  for (const StateSize size : {turning_rate, stretch_share})
+    rows.insert(largest_of_states(trajectory, size).second);
+  auto [speed, quickest] = largest_of_states(trajectory, fastest);
   const double top = find_measure("peak_speed").value(all.run, d);
   quickest = row_for(quickest, !(top > speed));
   speed = fastest(trajectory, quickest);

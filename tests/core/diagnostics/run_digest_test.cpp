@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/books.hpp"
@@ -313,6 +314,57 @@ TEST_CASE("that forces have no bound in the deployed pose is told of a long run 
   REQUIRE(w.parts.size() >= 4);
   const Digest whole = from_checkpoint_to_checkpoint(w, model, scene);
   CHECK(accuracy_warnings(whole.run, whole.diagnostics) == expected);
+}
+
+// What is told of states that no column and no rod's force leads to: a light rod, spun up for two steps
+// beside a heavy one whose spring pulls harder, and a strip's tip far out while a bar bears more.
+TEST_CASE("how fast rods turn and how far they give is told of a long run as of a short one") {
+  const std::string fixed =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = [0, 0, 0], fixed = true}, ";
+  const std::string spun = R"(loads = [{nodes = ['W'], force = [1, 0, 0]}]
+constraints = [{kind = 'line', nodes = ['W'], direction = [1, 0, 0]}]
+forces = [{kind = 'spring', nodes = ['F', 'C'], stiffness = 1000}, {kind = 'drag', nodes = ['P', 'Q'], damping = 0.001},
+  {kind = 'load_over_time', nodes = ['P'], force = [0, -0.03, 0], times = [10, 10.01, 10.02], values = [0, 1, 0]},
+  {kind = 'load_over_time', nodes = ['Q'], force = [0, 0.03, 0], times = [10, 10.01, 10.02], values = [0, 1, 0]}]
+)" + fixed + R"({name = 'F', position = [0, -200, 0], fixed = true},
+  {name = 'A', position = [100, 0, 0], velocity = [0, 200, 0]},
+  {name = 'C', position = [100, 50, 0], velocity = [20, 200, 0]}, {name = 'W', position = [0, 50, 0], mass = 10},
+  {name = 'P', position = [0, 0, 3]}, {name = 'Q', position = [0.01, 0, 3]}]
+rods = [{nodes = ['O', 'A'], mass = 100}, {nodes = ['A', 'C'], mass = 100}, {nodes = ['P', 'Q'], mass = 0.001}]
+[solver]
+step = 0.01
+end_time = 20
+)";
+  const std::string hung =
+      R"(loads = [{nodes = ['R'], force = [0, 0, -100]}, {nodes = ['T'], force = [0, 0.01, 0]}]
+forces = [
+  {kind = 'load_over_time', nodes = ['P'], force = [0, 0, -1], times = [0.5, 0.8, 1], values = [0.1, 8, 0.1]},
+  {kind = 'load_over_time', nodes = ['O'], force = [0, 0, -1], times = [0.5, 0.8, 1], values = [8, 0.1, 8]}]
+)" + fixed +
+      R"({name = 'P', position = [0, 0, -1]},
+  {name = 'Q', position = [4, 0, 0], fixed = true}, {name = 'R', position = [4, 0, -1], velocity = [0.3, 0, 0]},
+  {name = 'S', position = [0, 0, 2], fixed = true}, {name = 'T', position = [0, 1, 2]}]
+rod_model = 'quasi-static'
+rods = [{nodes = ['O', 'P'], mass = 1, area = 1e-6, youngs_modulus = 1e7},
+  {nodes = ['Q', 'R'], mass = 1, area = 1e-6, youngs_modulus = 1e9},
+  {nodes = ['S', 'T'], mass = 1, area = 1e-6, youngs_modulus = 1e7}]
+[solver]
+step = 0.01
+end_time = 2
+)";
+  for (const auto& [text, words, states] : {std::tuple{spun, "rods turn by up to", 500u},
+                                            std::tuple{hung, "rods move nodes by up to 0.8 m", 60u}}) {
+    const Scene scene = read_scene_text(text, "s.toml", {});
+    const auto model = build_model(scene);
+    const Simulation run = simulate(model, scene.solver);
+    const std::vector<std::string> expected = accuracy_warnings(run, diagnose(run));
+    REQUIRE(expected.size() == 1);
+    CHECK(expected[0].find(words) != std::string::npos);
+    Windows w = windows_of(scene, states);
+    REQUIRE(w.parts.size() >= 2);
+    const Digest whole = from_checkpoint_to_checkpoint(w, model, scene);
+    CHECK(accuracy_warnings(whole.run, whole.diagnostics) == expected);
+  }
 }
 
 // Beside the poses in which its windows are in line the ladder's rods bear 0.10 to 0.12 N s over the time to
