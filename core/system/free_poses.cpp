@@ -26,13 +26,18 @@ constexpr double longest_step = 0.04;   // of a node, in units of the size
 constexpr int most_free_steps = 12, most_projections = 30;
 constexpr double free_value = 1e-12;  // eigenvalue of G^T G, in units of the largest
 
-// Gears, and whatever else holds a measure at a value, are no drives.
-bool drives(const Constraint& c) {
-  return c.kind == "measure" && c.target.moves();
+// Gears, and whatever else holds a measure at a value, are no drives. The row between a rotor and its joint
+// leads the rotor, which is nowhere.
+bool drives(const Structure& structure, const Constraint& c) {
+  const auto is_rotor = [&](const MeasureTerm& term) {
+    const std::vector<int>& nodes = term.measure.nodes;
+    return nodes.size() == 1 && structure.nodes[static_cast<std::size_t>(nodes[0])].ghost;
+  };
+  return c.kind == "measure" && (c.target.moves() || std::ranges::any_of(c.measure.terms, is_rotor));
 }
 
 Structure without_drives(Structure structure) {
-  std::erase_if(structure.constraints, drives);
+  std::erase_if(structure.constraints, [&](const Constraint& c) { return drives(structure, c); });
   return structure;
 }
 
@@ -42,7 +47,7 @@ VectorXd without_drives(const Structure& structure, const VectorXd& angles) {
   const std::vector<int> first = followed_angles(structure).of_constraint;
   for (std::size_t c = 0; c < structure.constraints.size(); ++c) {
     const Constraint& constraint = structure.constraints[c];
-    if (first[c] < 0 || !drives(constraint)) continue;
+    if (first[c] < 0 || !drives(structure, constraint)) continue;
     const auto own = std::ranges::count_if(constraint.measure.terms, counts_turns, &MeasureTerm::measure);
     std::fill_n(leaves.begin() + first[c], own, 1);
   }

@@ -180,6 +180,40 @@ TEST_CASE("an array of panels with geared hinges has one free motion, with or wi
   CHECK(motions(structure_of(text + "motion = 'rate'\nrate = 10\n")) == 1);
 }
 
+// The rotor's turn is a number of its own, which the row to its joint has go along: rad beside m.
+TEST_CASE("the rotor of a motor follows what is led by hand") {
+  const std::string tower =
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'W', position = [0, -1, 0], fixed = true},\n"
+      "{name = 'O', position = [0, 0, 0], fixed = true}, {name = 'A', position = [0.05, 0, 0]},\n"
+      "{name = 'B', position = [0.05, 0.05, 0]}]\nrods = [{nodes = ['O', 'A'], mass = 1}, {nodes = ['A', "
+      "'B'], "
+      "mass = 1}]\n[[constraints]]\nkind = 'plane'\nnodes = ['A', 'B']\nnormal = [0, 0, 1]\n";
+  const std::string motor =
+      "[[forces]]\nkind = 'motor'\nnodes = ['W', 'O', 'A']\naxis = [0, 0, 1]\nstall_torque = 1\n"
+      "no_load_speed = 90\ngear_ratio = 30\n";
+  const Structure with = structure_of(tower + motor + "inertia = 1e-4\n"),
+                  without = structure_of(tower + motor);
+  REQUIRE(with.nodes.size() == without.nodes.size() + 1);
+  const VectorXd rest = node_positions(without), q = node_positions(with);
+  FreePoses light(without, rest, followed_of(without)), heavy(with, q, followed_of(with));
+  const MatrixXd motions = heavy.motions(q), expected = light.motions(rest);
+  REQUIRE(motions.cols() == 2);
+  const Index in_space = rest.size();
+  const MatrixXd seen = motions.topRows(in_space);
+  CHECK((expected - seen * (seen.transpose() * expected)).norm() < 1e-9);  // both are orthonormal
+  for (Index k = 0; k < 2; ++k) {
+    // Back onto rods of 0.05 m takes what is of second order: a thousandth of the way, about.
+    const double way = 5e-5;
+    const VectorXd pose = heavy.moved(q, motions.col(k), way);
+    CHECK(light.error(pose.head(in_space)) < 1e-10);
+    double most = 0;
+    for (Index i = 0; i < in_space; i += 3) most = std::max(most, (pose - q).segment<3>(i).norm());
+    CHECK(most == Approx(way).epsilon(2e-3));
+  }
+  const Vec3 target(0.03, 0.03, 0);
+  CHECK((heavy.pulled(q, 2, target) - q).head(in_space).isApprox(light.pulled(rest, 2, target) - rest, 1e-6));
+}
+
 TEST_CASE("a driven combination that lets go takes its angles out of those that are counted") {
   const Structure structure =
       structure_of(std::string(geared) +
