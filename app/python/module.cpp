@@ -437,7 +437,9 @@ void add_scene(py::module_& module) {
       .def("__setitem__", [](NodeForces& forces, const py::object& node,
                              const Vec3& force) { forces.of.set_force(node, force); })
       .def("__getitem__",
-           [](const NodeForces& forces, const py::object& node) { return forces.of.force(node); })
+           [](const NodeForces& forces, const py::object& node) {
+             return py::module_::import("unfurl").attr("_force")(forces.of.force(node));
+           })
       .def("__contains__", &is_node)
       .def("__iter__", [](const NodeForces& forces) { return py::iter(py::cast(forces.of.node_names())); });
   py::class_<SteppedScene>(module, "Stepper")

@@ -164,6 +164,19 @@ def test_forces_are_added_to_and_logged():
         stepper.step()  # by 0.3, and 0.4 across
         assert np.abs(stepper.v[0] - [0.5, 0.4, 0]).max() < 1e-14
         assert np.array_equal(log, [[4, 0, 0], [6, 8, 0]])
+        # A part that is set would be lost: it is a number that was asked for, and no memory of the stepper's.
+        with pytest.raises(ValueError, match="read-only"):
+            stepper.force["P"][2] = 5
+        half = stepper.force["P"] / 2
+        half[2] = 5
+        mine = stepper.force["P"]
+        mine -= [1, 1, 1]
+        assert np.array_equal(half, [3, 4, 5]) and np.array_equal(mine, [5, 7, -1]) and np.array_equal(stepper.force["P"], [6, 8, 0])
+        stepper.force["P"] *= 2
+        stepper.force["P"] /= 4
+        stepper.force["P"] -= [-3, 4, 0]
+        assert np.array_equal(stepper.force["P"], [6, 0, 0])
+        stepper.force["P"] = [6, 8, 0]
         with pytest.raises(ValueError, match="three finite numbers"):
             stepper.force["P"] += np.nan
         assert stepper.step() and np.abs(stepper.v[0] - [0.8, 0.8, 0]).max() < 1e-14

@@ -188,6 +188,27 @@ class Run:
         return f"<run of {self.title!r}: {self.status} at {self.t[-1]:.6g} s, {len(self.t)} states>"
 
 
+class _Force(np.ndarray):
+    """A force between steps, as a number is one: `stepper.force[node] += f` sets another, its parts cannot be set."""
+
+    def __iadd__(self, other):
+        return np.asarray(self) + other
+
+    def __isub__(self, other):
+        return np.asarray(self) - other
+
+    def __imul__(self, other):
+        return np.asarray(self) * other
+
+    def __itruediv__(self, other):
+        return np.asarray(self) / other
+
+
+def _force(array: np.ndarray) -> _Force:
+    array.flags.writeable = False
+    return array.view(_Force)
+
+
 class Stepper(_unfurl.Stepper):
     """A run step by step: while s.step(): s.t, s.x, s.v. `status` is running until it has ended."""
 
