@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/panel/document/build_edits.hpp"
 #include "app/panel/live_session.hpp"
 
 namespace unfurl {
@@ -17,10 +18,7 @@ void LiveSession::take_tool(Tool tool) {
   let_go();
   state_.tool = state_.tool == tool ? Tool::read : tool;
   if (state_.tool != Tool::build || !state_.shown) return;
-  std::vector<Vec3> places;
-  for (const Node& node : state_.shown->simulation.trajectory.structure().nodes)
-    places.push_back(node.position);
-  begin_build(places);
+  begin_build(places_of(state_.shown->simulation.trajectory.structure()));
 }
 
 // At the start, which is what is built; a plane mechanism is built on in its plane.
@@ -28,9 +26,7 @@ void LiveSession::begin_build(const std::vector<Vec3>& places) {
   state_.playback.playing = false;
   if (state_.shown) state_.playback.t = state_.shown->simulation.trajectory.start_time();
   for (const int axis : {2, 0, 1})  // of a line's planes the upright one that is seen from the front
-    if (std::all_of(places.begin(), places.end(),
-                    [&](const Vec3& place) { return std::abs(place[axis] - places.front()[axis]) < 1e-9; }))
-      state_.grid.plane = axis;
+    if (in_plane_across(axis, places)) state_.grid.plane = axis;
 }
 
 void LiveSession::build_from_nothing() {

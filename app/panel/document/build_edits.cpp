@@ -71,6 +71,19 @@ Vec3 mirrored(Vec3 point, int axis) {
   return point;
 }
 
+std::vector<Vec3> places_of(const Structure& structure) {
+  std::vector<Vec3> places;
+  for (const Node& node : structure.nodes)
+    if (!node.ghost) places.push_back(node.position);
+  return places;
+}
+
+bool in_plane_across(int axis, const std::vector<Vec3>& places) {
+  return !places.empty() && std::ranges::all_of(places, [&](const Vec3& place) {
+    return std::abs(place[axis] - places.front()[axis]) < 1e-9;
+  });
+}
+
 SceneDocument with_node(const SceneDocument& document, const Vec3& position, std::string& name) {
   const Scene scene = built_scene(document);
   for (int i = 1; name.empty() || find_node(scene.custom, name) != nullptr; ++i)

@@ -6,6 +6,7 @@
 
 #include "app/panel/document/scene_document.hpp"
 #include "app/panel/document/selection.hpp"
+#include "core/structure/structure.hpp"
 
 namespace unfurl {
 
@@ -20,6 +21,9 @@ struct BuildGrid {
 };
 Vec3 snapped(Vec3 point, const BuildGrid& grid);
 Vec3 mirrored(Vec3 point, int axis);
+// The nodes that a person sees, at the start; whether places lie in one plane across an axis.
+std::vector<Vec3> places_of(const Structure& structure);
+bool in_plane_across(int axis, const std::vector<Vec3>& places);
 
 // These throw SceneError where the scene is none of nodes and rods of its own file.
 // A new node, called `name`: one that is free.

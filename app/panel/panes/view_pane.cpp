@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "app/panel/document/build_edits.hpp"
 #include "app/panel/panes/panes.hpp"
 #include "app/panel/runs/comparison.hpp"
 #include "app/panel/view/film_camera.hpp"
@@ -100,8 +101,11 @@ void click_to_build(PanelState& state, const SceneView& view, const Frame& frame
   if (state.tool != Tool::build || !ImGui::IsItemHovered()) return;
   const bool free = state.hovered.kind == Selection::Kind::none;
   if (free && ImGui::IsMouseDoubleClicked(0)) {
-    const Vec3 through = place_of_node(state, state.selected.name).value_or(Vec3::Zero());
-    if (const auto place = point_in_plane(state, view, frame, through, state.grid.plane))
+    const int plane = state.grid.plane;
+    const std::vector<Vec3> places = places_of(state.shown->simulation.trajectory.structure());
+    const Vec3 usual = plane >= 0 && in_plane_across(plane, places) ? places.front() : Vec3::Zero();
+    const Vec3 through = place_of_node(state, state.selected.name).value_or(usual);
+    if (const auto place = point_in_plane(state, view, frame, through, plane))
       state.intents.emplace_back([to = *place](LiveSession& s) { s.add_node(to); });
   }
   if (ImGui::GetIO().KeyShift && ImGui::IsMouseClicked(0) && state.hovered.kind == Selection::Kind::node &&

@@ -2,6 +2,7 @@
 // A hand on the structure: pulling nodes, wiggling, building.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
 
 #include "app/panel/document/build_edits.hpp"
 #include "core/scene/build.hpp"
@@ -332,6 +333,39 @@ TEST_CASE("a double click is one by the time between its presses, however long f
   for (int i = 0; i < 4; ++i) driver.frame(clicks.frame);
   driver.settle();
   CHECK(driver.state().shown->scene.custom.nodes.size() == (clicks.twice ? 3 : 2));
+}
+
+// A motor's rotor is a number of its own, and no node at the origin.
+TEST_CASE("a node that is built in a plane mechanism is in its plane wherever that is") {
+  SceneDocument document = blank_document();
+  document.text = std::make_shared<const std::string>(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = [0, 2.3, 0], fixed = true}, {name = "
+      "'A', "
+      "position = [0, 2.3, 1]}, {name = 'B', position = [1, 2.3, 1]}]\nrods = [{nodes = ['O', 'A'], mass = "
+      "1}, "
+      "{nodes = ['A', 'B'], mass = 1}]\n[[constraints]]\nkind = 'plane'\nnodes = ['A', 'B']\nnormal = [0, 1, "
+      "0]\n"
+      "[[forces]]\nkind = 'motor'\nnodes = ['O', 'A', 'B']\naxis = [0, 1, 0]\nstall_torque = "
+      "1\nno_load_speed = "
+      "90\ninertia = 1\n[solver]\nend_time = 0.1\n");
+  PanelDriver driver(quick(), document);
+  driver.key(Key::b);
+  driver.frame();
+  CHECK(driver.state().grid.plane == 1);
+  driver.move_to("view", 0.85, 0.35);
+  driver.frame(1.0);
+  REQUIRE(driver.state().hovered.kind == Selection::Kind::none);
+  InputEvent event;
+  event.kind = InputEvent::Kind::button;
+  for (int i = 0; i < 4; ++i) {
+    event.down = i % 2 == 0;
+    driver.panel().handle(event);
+  }
+  for (int i = 0; i < 4; ++i) driver.frame(0.016);
+  driver.settle();
+  const auto& nodes = driver.state().shown->scene.custom.nodes;
+  REQUIRE(nodes.size() == 4);
+  CHECK(nodes[3].position.y() == Approx(2.3).epsilon(1e-12));
 }
 
 }  // namespace hand_test
