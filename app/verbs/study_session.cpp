@@ -85,11 +85,11 @@ std::string study_identity(const std::string& what, const Scene& scene) {
          scene_text(scene);
 }
 
-std::string require_identity(const fs::path& directory, const std::string& identity,
-                             const std::string& cure) {
+std::string require_identity(const fs::path& directory, const std::string& identity, const std::string& cure,
+                             bool may_have_come) {
   const TextFile scene = read_text_file((directory / "scene.toml").string());
   if (!scene.error.empty()) return identity;
-  if (const auto both = identity_of_both(scene.text, identity)) return *both;
+  if (const auto both = identity_of_both(scene.text, identity, may_have_come)) return *both;
   const std::size_t there = std::min(scene.text.find('\n'), scene.text.size());
   const std::size_t asked = std::min(identity.find('\n'), identity.size());
   std::string what = "holds results of another scene or other settings; ";
@@ -143,7 +143,8 @@ void StudySession::begin() {
   const bool begun = arguments_.join ? fs::exists(directory() / "scene.toml", error)
                                      : !journals_like(journal_, directory()).empty();
   if (begun)
-    identity_ = require_identity(directory(), identity_, "use another directory, or --force to begin anew");
+    identity_ = require_identity(directory(), identity_, "use another directory, or --force to begin anew",
+                                 !arguments_.join);  // whose workers keep what others have found
   if (!identity_.empty()) write_file_atomically(directory() / "scene.toml", identity_);
   if (shard()) output_.lock().share();
 }

@@ -38,9 +38,9 @@ void warn_of_idle_sets(const Arguments& arguments, const std::vector<std::string
 std::string idle_key_text(const Scene& scene, const std::string& key);
 
 // What DIR/scene.toml is to say with results of `identity` there. Throws FileError, with what can be done,
-// where it tells of others.
+// where it tells of others. As for identity_of_both().
 std::string require_identity(const std::filesystem::path& directory, const std::string& identity,
-                             const std::string& cure);
+                             const std::string& cure, bool may_have_come = true);
 
 // Throws FileError, with what can be done, where one of these tables in the directory was finished and
 // changed since.

@@ -111,6 +111,25 @@ bool same_answer(const SweepPlan& plan, const std::vector<std::string>& a,
   return true;
 }
 
+// Where a point made no structure as a file was missing that it names: does it make one now?
+class MissingFiles {
+ public:
+  explicit MissingFiles(const SweepPlan& plan) : plan_(plan), named_(!files_of_points(plan).empty()) {}
+  bool have_come(std::size_t point, const std::vector<std::string>& row) const {
+    if (!named_ || row[plan_.axes.size()] != "invalid") return false;
+    try {
+      build_model(plan_.source.read(plan_.changes(point)));
+      return true;
+    } catch (const SceneError&) {
+      return false;
+    }
+  }
+
+ private:
+  const SweepPlan& plan_;
+  bool named_;
+};
+
 constexpr std::size_t most_pieces = 1024;  // of a sweep, for the workers of a team
 
 std::string point_text(const SweepPlan& plan, std::size_t point) {
@@ -147,8 +166,10 @@ std::vector<std::size_t> points_of_shard(const SweepPlan& plan) {
 Sweep run_sweep(const SweepPlan& plan, Journal& journal, const StudyHooks& hooks) {
   const std::vector<std::size_t> own = points_of_shard(plan);
   std::vector<std::size_t> open;
+  const MissingFiles missing(plan);
   for (const std::size_t i : own)
-    if (!journal.find(plan.key(i))) open.push_back(i);
+    if (const auto* row = journal.find(plan.key(i)); !row || (!hooks.team && missing.have_come(i, *row)))
+      open.push_back(i);
   // What a worker of a team takes at once: points that do not lie together, since those cost alike.
   const std::size_t pieces = std::min<std::size_t>(plan.points(), most_pieces);
   if (hooks.team)
@@ -235,12 +256,13 @@ Sweep merge_sweep(const SweepPlan& plan, const std::vector<std::filesystem::path
   SweepPlan whole = plan;
   whole.shard = {};
   std::vector<std::string> conflicts;
+  const MissingFiles missing(plan);
   Sweep sweep = collect(plan, points_of_shard(whole), [&](std::size_t i) {
     const std::vector<std::string>* first = nullptr;
     std::size_t from = 0;
     for (std::size_t k = 0; k < open.size(); ++k) {
       const auto* row = open[k]->find(plan.key(i));
-      if (!row) continue;
+      if (!row || missing.have_come(i, *row)) continue;
       if (!first) {
         first = row;
         from = k;

@@ -60,8 +60,10 @@ struct SweepPlan {
 // as it stands does not. Points of others are of another sweep.
 std::string files_of_points(const SweepPlan& plan);
 // What the points of a directory belong to, which says `there`, once those of a sweep are beside them that
-// says `now`: one may name files that the other does not. None where they are of different sweeps.
-std::optional<std::string> identity_of_both(const std::string& there, const std::string& now);
+// says `now`: one may name files that the other does not, and where they `may_have_come`, `there` files that
+// were missing. None where they are of different sweeps.
+std::optional<std::string> identity_of_both(const std::string& there, const std::string& now,
+                                            bool may_have_come = true);
 
 // What is varied may be wrong as the scene has it: its source, then, has the values of a point that is right.
 void stand_on_a_point(SweepPlan& plan);

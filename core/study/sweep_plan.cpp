@@ -322,7 +322,8 @@ std::string files_of_points(const SweepPlan& plan) {
   return text;
 }
 
-std::optional<std::string> identity_of_both(const std::string& there, const std::string& now) {
+std::optional<std::string> identity_of_both(const std::string& there, const std::string& now,
+                                            bool may_have_come) {
   const auto [scene, files] = files_apart(now);
   const auto [other, others] = files_apart(there);
   if (scene != other) return std::nullopt;
@@ -330,7 +331,7 @@ std::optional<std::string> identity_of_both(const std::string& there, const std:
   for (const auto& [name, sum] : others)
     if (const auto found = files.find(name); found == files.end())
       text += name + sum + "\n";
-    else if (found->second != sum)
+    else if (found->second != sum && !(sum == not_there && may_have_come))
       return std::nullopt;
   return text;
 }

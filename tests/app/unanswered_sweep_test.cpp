@@ -97,11 +97,16 @@ TEST_CASE("points that name a file belong to its contents, by the key as by a va
     anew.emplace_back("--force");
     CHECK(run_program(anew).code == 0);
     CHECK(last() == Approx(2 * 9.81 * 0.5).epsilon(2.5e-4));
-    // One that was not there is another one, too.
+    // One that is gone is another one, too; one that comes later has had no answer.
     std::filesystem::remove(dir / "n2.csv");
     CHECK(run_program(sweep).code == 5);
     CHECK(run_program(anew).code == 0);
+    CHECK(file_text(out + "/sweep.csv").find("invalid") != std::string::npos);
+    CHECK(run_program(sweep).code == 0);
     dir.write("n2.csv", nodes("1"));
+    CHECK(run_program(sweep).code == 0);
+    CHECK(last() == Approx(2 * 9.81 * 0.5).epsilon(2.5e-4));
+    dir.write("n2.csv", nodes("2"));
     CHECK(run_program(sweep).code == 5);
   }
 }
