@@ -2,6 +2,7 @@
 #include "core/math/saddle_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +17,73 @@ void SaddleSolver::Factors::analyse(const SparseRows& upper, const std::vector<i
     place[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
 }
 
+// What a solver has of its matrix before there are numbers.
+struct SaddleSolver::Analysis {
+  Analysis(const SparseRows& mass, const SparseRows& jacobian, Order how, const VectorXd& column_scale);
+  bool is_of(const SparseRows& mass, const SparseRows& jacobian, Order how) const {
+    return order == how && same(M, mass) && same(G, jacobian);
+  }
+  static bool same(const SparseRows& a, const SparseRows& b) {
+    const auto equal = [](const auto* x, const auto* y, Index size) { return std::equal(x, x + size, y); };
+    return a.rows() == b.rows() && a.cols() == b.cols() && a.nonZeros() == b.nonZeros() &&
+           equal(a.outerIndexPtr(), b.outerIndexPtr(), a.outerSize() + 1) &&
+           equal(a.innerIndexPtr(), b.innerIndexPtr(), a.nonZeros()) &&
+           equal(a.valuePtr(), b.valuePtr(), a.nonZeros());
+  }
+  // Of this thread: one model has several solvers at a time, and again and again.
+  static std::shared_ptr<const Analysis> shared(const SparseRows& M, const SparseRows& G, Order order,
+                                                const VectorXd& column_scale) {
+    constexpr Index most_kept = 50000;  // entries of factors: a few MB
+    thread_local std::array<std::shared_ptr<const Analysis>, 4> recent;
+    for (const auto& known : recent)
+      if (known && known->is_of(M, G, order)) return known;
+    auto made = std::make_shared<const Analysis>(M, G, order, column_scale);
+    if (made->safe.ldlt.factor_nonzeros() <= most_kept) {
+      std::rotate(recent.begin(), recent.end() - 1, recent.end());
+      recent.front() = made;
+    }
+    return made;
+  }
+
+  SparseRows M, G;
+  Order order;
+  SparseRows upper;  // of K_e, but for e
+  Factors safe;
+  std::unique_ptr<Factors> sparse;
+  std::vector<int> jacobian_place;
+};
+
+SaddleSolver::Analysis::Analysis(const SparseRows& mass, const SparseRows& jacobian, Order how,
+                                 const VectorXd& column_scale)
+    : M(mass), G(jacobian), order(how) {
+  const Index n = M.rows(), m = G.rows();
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int r = 0; r < M.outerSize(); ++r)
+    for (SparseRows::InnerIterator it(M, r); it; ++it)
+      if (it.col() >= r)
+        entries.emplace_back(r, it.col(), column_scale[r] * it.value() * column_scale[it.col()]);
+  for (int r = 0; r < G.outerSize(); ++r) {
+    for (SparseRows::InnerIterator it(G, r); it; ++it) entries.emplace_back(it.col(), n + r, 1.0);
+    entries.emplace_back(n + r, n + r, 0.0);
+  }
+  upper.resize(n + m, n + m);
+  upper.setFromTriplets(entries.begin(), entries.end());
+  const SaddleOrders orders = saddle_orders(upper, G * column_scale.asDiagonal());
+  safe.analyse(upper, orders.safe);
+  if (order == Order::sparse_first && orders.sparse != orders.safe) {
+    sparse = std::make_unique<Factors>();
+    sparse->analyse(upper, orders.sparse);
+    if (sparse->ldlt.factor_nonzeros() >= safe.ldlt.factor_nonzeros()) sparse.reset();
+  }
+  for (int r = 0; r < G.outerSize(); ++r)
+    for (SparseRows::InnerIterator it(G, r); it; ++it) {
+      const int* begin = upper.innerIndexPtr() + upper.outerIndexPtr()[it.col()];
+      const int* end = upper.innerIndexPtr() + upper.outerIndexPtr()[it.col() + 1];
+      jacobian_place.push_back(
+          static_cast<int>(std::lower_bound(begin, end, static_cast<int>(n + r)) - upper.innerIndexPtr()));
+    }
+}
+
 SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_columns, double regularisation,
                            Order order)
     : n_(M.rows()),
@@ -24,32 +92,14 @@ SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_col
       row_scale_(VectorXd::Ones(G.rows())),
       regularisation_(regularisation) {
   for (Index i = 0; i < n_; ++i) column_scale_[i] = 1.0 / std::sqrt(M.coeff(i, i));
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int r = 0; r < M.outerSize(); ++r)
-    for (SparseRows::InnerIterator it(M, r); it; ++it)
-      if (it.col() >= r)
-        entries.emplace_back(r, it.col(), column_scale_[r] * it.value() * column_scale_[it.col()]);
-  for (int r = 0; r < G.outerSize(); ++r) {
-    for (SparseRows::InnerIterator it(G, r); it; ++it) entries.emplace_back(it.col(), n_ + r, 1.0);
-    entries.emplace_back(n_ + r, n_ + r, -regularisation);
-  }
-  SparseRows upper(n_ + m_, n_ + m_);
-  upper.setFromTriplets(entries.begin(), entries.end());
-  const SaddleOrders orders = saddle_orders(upper, G * column_scale_.asDiagonal());
-  safe_.analyse(upper, orders.safe);
-  if (order == Order::sparse_first && orders.sparse != orders.safe) {
-    sparse_ = std::make_unique<Factors>();
-    sparse_->analyse(upper, orders.sparse);
-    if (sparse_->ldlt.factor_nonzeros() >= safe_.ldlt.factor_nonzeros()) sparse_.reset();
-  }
+  const std::shared_ptr<const Analysis> known = Analysis::shared(M, G, order, column_scale_);
+  safe_ = known->safe;
+  if (known->sparse) sparse_ = std::make_unique<Factors>(*known->sparse);
+  jacobian_place_ = known->jacobian_place;
+  const SparseRows& upper = known->upper;
   values_.assign(upper.valuePtr(), upper.valuePtr() + upper.nonZeros());
-  for (int r = 0; r < G.outerSize(); ++r)
-    for (SparseRows::InnerIterator it(G, r); it; ++it) {
-      const int* begin = upper.innerIndexPtr() + upper.outerIndexPtr()[it.col()];
-      const int* end = upper.innerIndexPtr() + upper.outerIndexPtr()[it.col() + 1];
-      jacobian_place_.push_back(
-          static_cast<int>(std::lower_bound(begin, end, static_cast<int>(n_ + r)) - upper.innerIndexPtr()));
-    }
+  for (Index r = n_; r < n_ + m_; ++r)
+    values_[static_cast<std::size_t>(upper.outerIndexPtr()[r])] = -regularisation;
   packed_.assign(static_cast<std::size_t>((n_ + m_) * max_columns), 0.0);
   for (VectorXd* v : {&rhs_, &best_, &try_}) v->setZero(n_ + m_);
 }

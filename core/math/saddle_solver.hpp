@@ -95,6 +95,7 @@ class SaddleSolver {
     std::vector<int> place;  // of each row in the order of elimination
     void analyse(const SparseRows& upper, const std::vector<int>& order);
   };
+  struct Analysis;
   const Factors& first() const { return sparse_ ? *sparse_ : safe_; }
   bool factorise_safely();
   bool first_serves(bool held);
