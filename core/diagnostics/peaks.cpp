@@ -439,9 +439,9 @@ VectorXd rod_forces_within_step(const Simulation& run, double t) {
   VectorXd forces;
   for (std::size_t i = 0; i + 1 < states.size() && states.time(i) < t; ++i)
     if (t < states.time(i + 1)) {
-      const Neighbourhood around(run, i);
-      if (t < around.end())
-        around.sample({t}, [&](const Simulation& piece) {
+      const std::shared_ptr<const Neighbourhood> around = neighbourhood(run, i);
+      if (t < around->end())
+        around->sample({t}, [&](const Simulation& piece) {
           Diagnostics made;
           forces = judged_piece(piece, false, made).axial_force.row(0).transpose();
           return std::vector<double>(piece.trajectory.size());
