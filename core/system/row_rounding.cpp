@@ -47,17 +47,20 @@ void System::Data::clear_rounding(const std::vector<double>& node_entries, Spars
   // A few products and sums; coefficients of what was eliminated are of order one.
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
   const double* entry = node_entries.data();
-  for (Index r = 0; r < G.rows(); ++r) {
-    double* const begin = G.valuePtr() + G.outerIndexPtr()[r];
-    double* const end = G.valuePtr() + G.outerIndexPtr()[r + 1];
-    const double* const row_end = node_entries.data() + row_ends[static_cast<std::size_t>(r)];
-    double whole = 0, left = 0;
-    for (; entry < row_end; ++entry) whole = std::max(whole, std::abs(*entry));
-    for (const double* x = begin; x < end; ++x) left = std::max(left, std::abs(*x));
-    if (left <= rounding * whole) std::fill(begin, end, 0.0);
+  const int* const start = G.outerIndexPtr();
+  double* const values = G.valuePtr();
+  for (std::size_t r = 0, rows_of_G = row_ends.size(); r < rows_of_G; ++r) {
+    const double* const row_end = node_entries.data() + row_ends[r];
+    double whole = 0;
+#pragma GCC unroll 2
+    for (; entry != row_end; ++entry) whole = std::max(whole, std::abs(*entry));
+    const double bound = rounding * whole;
+    double* const end = values + start[r + 1];
+    const double* x = values + start[r];
+    while (x != end && !(std::abs(*x) > bound)) ++x;
+    if (x == end) std::fill(values + start[r], end, 0.0);
   }
-  for (const int r : implied)
-    std::fill(G.valuePtr() + G.outerIndexPtr()[r], G.valuePtr() + G.outerIndexPtr()[r + 1], 0.0);
+  for (const int r : implied) std::fill(values + start[r], values + start[r + 1], 0.0);
 }
 
 // A row that follows from the eliminated ones has no gradient in any pose that these allow, where one that is

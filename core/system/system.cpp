@@ -128,6 +128,7 @@ void System::Data::build_coordinates() {
   }
   B.makeCompressed();
   B_transposed = B.transpose();
+  of_solved = RowSums(B);
   rows = total_rows(kept);
   int first = 0;
   for (const ConstraintBlock* block : kept) {
@@ -195,12 +196,10 @@ void System::Data::build_jacobian_map() {
   for (std::size_t i = 0; i < terms.size(); ++i) {
     if (i == 0 || terms[i].row != terms[i - 1].row || terms[i].column != terms[i - 1].column) {
       places.emplace_back(terms[i].row, terms[i].column, 0.0);
-      sum_start.push_back(static_cast<int>(i));
+      sums.begin_row();
     }
-    sum_source.push_back(terms[i].source);
-    sum_coefficient.push_back(terms[i].coefficient);
+    sums.add(terms[i].source, terms[i].coefficient);
   }
-  sum_start.push_back(static_cast<int>(terms.size()));
   pattern.resize(rows, B.cols());
   pattern.setFromTriplets(places.begin(), places.end());
   pattern.makeCompressed();
@@ -308,18 +307,18 @@ void System::expand(const ConstVec& z, MutVec q) const {
     q = z;
     return;
   }
-  q = data_->q0;
   if (data_->origin.size() == 0)
-    q.noalias() += data_->B * z;
+    data_->of_solved.of(z.data(), q.data());
   else
-    q.noalias() += data_->B * (z - data_->origin);
+    data_->of_solved.of(VectorXd(z - data_->origin).data(), q.data());
+  q = data_->q0 + q;
 }
 
 void System::expand_rate(const ConstVec& w, MutVec v) const {
   if (!data_->eliminated)
     v = w;
   else
-    v.noalias() = data_->B * w;
+    data_->of_solved.of(w.data(), v.data());
 }
 
 VectorXd System::reduce(const ConstVec& q) const {
@@ -391,14 +390,7 @@ void System::jacobian(const ConstVec& q, SparseRows& G, std::vector<double>& scr
     data_->kept[b]->jacobian(q.data(), out);
     out += data_->block_entries[b];
   }
-  double* value = G.valuePtr();
-  for (std::size_t e = 0; e + 1 < data_->sum_start.size(); ++e) {
-    double sum = 0;
-    const auto end = static_cast<std::size_t>(data_->sum_start[e + 1]);
-    for (auto k = static_cast<std::size_t>(data_->sum_start[e]); k < end; ++k)
-      sum += data_->sum_coefficient[k] * scratch[static_cast<std::size_t>(data_->sum_source[k])];
-    value[e] = sum;
-  }
+  data_->sums.of(scratch.data(), G.valuePtr());
   if (data_->eliminated) data_->clear_rounding(scratch, G);
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/forces/elastic_rods.hpp"
 #include "core/forces/force.hpp"
+#include "core/math/row_sums.hpp"
 #include "core/structure/measure.hpp"
 #include "core/system/system.hpp"
 
@@ -18,6 +19,7 @@ struct System::Data {
   VectorXd unloaded_force;                          // the sum of the others but the loads [N]
   VectorXd gravity_force;                           // its part, for energies
   SparseRows node_mass, mass, B, B_transposed;
+  RowSums of_solved;  // B once more
   VectorXd q0, start;
   // z that q0 is at: zero unless the structure is far from the origin (size 0: zero). There q0 + B z would be
   // known to several times what rounding the coordinates leaves, and rows that depend on each other fit to
@@ -34,11 +36,9 @@ struct System::Data {
   const ElasticRods* elastic_rods = nullptr;  // among forces; nullptr: no rod gives
   std::vector<Drive> drives;
   std::vector<MeasureFunction> followed;  // angles that count turns
-  // G_z: entry e is the sum of coefficient * (entry `source` of the node Jacobian), sources [start_e,
-  // start_{e+1}).
+  // G_z: every entry is a sum of entries of the node Jacobian.
   SparseRows pattern;
-  std::vector<int> sum_start, sum_source;
-  std::vector<double> sum_coefficient;
+  RowSums sums;
   std::vector<std::size_t> block_entries;  // entries of the node Jacobian of each kept block
   std::size_t entries = 0;
   std::vector<int> row_ends;  // of the kept rows, among those entries
