@@ -150,19 +150,20 @@ void SparseLdlt::solve_ordered(double* b, int columns) const {
 }
 
 void SparseLdlt::subtract_product(const double* values, const double* x, double* r) const {
-  const int* const row = entry_row_.data();
-  const int* const source = entry_source_.data();
+  const int* row = entry_row_.data();
+  const int* source = entry_source_.data();
   for (int k = 0, n = static_cast<int>(n_); k < n; ++k) {
     const double xk = x[k];
     double sum = 0;
-    for (int e = entry_start_[static_cast<std::size_t>(k)],
-             end = entry_start_[static_cast<std::size_t>(k) + 1];
-         e < end; ++e) {
-      const double value = values[source[e]];
-      sum += value * x[row[e]];
-      if (row[e] != k) r[row[e]] -= value * xk;
+    for (const int* const diagonal = entry_row_.data() + entry_start_[static_cast<std::size_t>(k) + 1] - 1;
+         row != diagonal; ++row, ++source) {
+      const double value = values[*source];
+      sum += value * x[*row];
+      r[*row] -= value * xk;
     }
+    sum += values[*source] * xk;
     r[k] -= sum;
+    ++row, ++source;
   }
 }
 
