@@ -92,6 +92,13 @@ int write_end(const Scene& scene, UnfinishedRun& unfinished, Simulation& rest, s
   return exit_code_of(whole.run, d);
 }
 
+// Nothing ends it before there are more states than one part has.
+bool is_long(const Model& model, const SolverOptions& options, const Parts& parts) {
+  const bool may_end_early = !model.structure.deployment.empty() && options.at_deployed == "stop";
+  return !may_end_early &&
+         options.end_time >= static_cast<double>(parts.states + parts.around) * options.step;
+}
+
 int run_in_parts(const Scene& scene, const std::shared_ptr<const Model>& model, const Arguments& arguments,
                  OwnDirectory& output, Beside film) {
   UnfinishedRun unfinished(output.written(), scene, model, arguments.checkpoint, film);
@@ -109,9 +116,8 @@ int run_in_parts(const Scene& scene, const std::shared_ptr<const Model>& model, 
     ahead.stop();
     unfinished.take(std::move(window), stepper, ahead.beside());
   };
-  // Not of what is displaced afterwards. Of a run that turns out to be handed over in parts it was for
-  // nothing.
-  if (!model->structure.quasi_static && !parts.archived)
+  // Not of what is displaced afterwards. Of a run that is handed over in parts it is for nothing.
+  if (!model->structure.quasi_static && !parts.archived && !is_long(*model, scene.solver, parts))
     parts.look = [&](const Trajectory& so_far) {
       ahead.look(so_far, std::clamp<std::size_t>(parts.states / 64 * 4, 4, 48));
     };
