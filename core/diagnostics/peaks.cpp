@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <tuple>
@@ -392,9 +393,8 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
     return out;
   };
   const std::vector<double> at_states = signed_values(*column);
-  std::vector<std::size_t> also = sign < 0 ? reaction_dips(d, name) : std::vector<std::size_t>();
-  if (name == (sign < 0 ? "axial_force_min_N" : "axial_force_max_N"))
-    also = rod_humps(run.trajectory, d, sign);
+  std::vector<std::size_t> also = rod_humps(run.trajectory, d, name, sign);
+  if (sign < 0) std::ranges::copy(reaction_dips(d, name), std::back_inserter(also));
   PeakInMotion top = top_of_motion(run, at_states, of_the_state(*column) ? values : StateValues(), also);
   if (is_force(*column) && at_states.size() == run.trajectory.size())
     if (const PeakInMotion rise = without_bound(run, at_states, values); !std::isnan(rise.value)) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "core/diagnostics/peak_samples.hpp"
@@ -47,11 +48,21 @@ bool is_beside(const Trajectory& run, double t, double of_state) {
          of_state <= run.time(std::min(i + 2, run.size() - 1));
 }
 
+// What all rods have of a column that is the largest (sign 1) or least (-1) of theirs, with that sign [states
+// x rods]; nothing of other columns.
+MatrixXd of_rods(const Structure& structure, const Diagnostics& d, std::string_view column, double sign) {
+  if (column == (sign < 0 ? "axial_force_min_N" : "axial_force_max_N")) return sign * d.axial_force;
+  if (column == (sign < 0 ? "axial_stress_min_Pa" : "axial_stress_max_Pa"))
+    return sign * over_rods(structure, d, axial_stress);
+  if (sign > 0 && column == "stress_ratio_max") return over_rods(structure, d, stress_ratio);
+  if (sign > 0 && column == "buckling_ratio_max") return over_rods(structure, d, buckling_ratio);
+  return {};
+}
+
 }  // namespace
 
 PeakForce peak_rod_force(const Simulation& run, const Diagnostics& d, Pull pull) {
   PeakForce peak = peak_rod_force(d, pull);
-  if (peak.rod < 0 || d.left_open > 0) return peak;
   PeakInMotion top;
   if (pull != Pull::compression) top = extreme_of_column(run, d, "axial_force_max_N", true);
   if (pull != Pull::tension)
@@ -67,22 +78,23 @@ PeakForce peak_rod_force(const Simulation& run, const Diagnostics& d, Pull pull)
   return peak;
 }
 
-std::vector<std::size_t> rod_humps(const Trajectory& run, const Diagnostics& d, double sign) {
+std::vector<std::size_t> rod_humps(const Trajectory& run, const Diagnostics& d, std::string_view column,
+                                   double sign) {
   constexpr std::size_t most = 3;
   constexpr double round_off = 1e-9;
-  const Index states = d.axial_force.rows();
+  const MatrixXd values = of_rods(run.structure(), d, column, sign);
+  const Index states = values.rows();
   double best = -std::numeric_limits<double>::infinity();
-  for (Index r = 0; r < d.axial_force.cols(); ++r)
-    for (Index i = 0; d.shows(r) && i < states; ++i) best = std::max(best, sign * d.axial_force(i, r));
+  for (Index r = 0; r < values.cols(); ++r)
+    for (Index i = 0; d.shows(r) && i < states; ++i) best = std::max(best, values(i, r));
   std::vector<std::pair<double, std::size_t>> found;
   const auto leads = [&](std::size_t i) {
     return &run.model(i) == &run.model(i + 1) && run.time(i) < run.time(i + 1) &&
            !run.report(i + 1).singular_event;
   };
-  for (Index r = 0; r < d.axial_force.cols(); ++r)
+  for (Index r = 0; r < values.cols(); ++r)
     for (Index i = 1; d.shows(r) && i + 1 < states; ++i) {
-      const double x = sign * d.axial_force(i, r), before = sign * d.axial_force(i - 1, r),
-                   behind = sign * d.axial_force(i + 1, r);
+      const double x = values(i, r), before = values(i - 1, r), behind = values(i + 1, r);
       const auto k = static_cast<std::size_t>(i);
       if (!(x >= before && x >= behind) || !leads(k - 1) || !leads(k)) continue;
       const double reach = vertex({run.time(k - 1), run.time(k), run.time(k + 1)}, {before, x, behind}).value;
@@ -99,7 +111,6 @@ WorstRod worst_rod(const Simulation& run, const Diagnostics& d,
                    double (*quantity)(const Rod&, double force)) {
   const Structure& structure = run.trajectory.structure();
   WorstRod worst = worst_rod(structure, d, quantity);
-  if (worst.rod < 0 || d.left_open > 0) return worst;
   const PeakInMotion top =
       quantity == axial_stress
           ? larger_magnitude(extreme_of_column(run, d, "axial_stress_max_Pa", true),

@@ -285,8 +285,7 @@ bool RunDigest::worth_a_look(const Digest& all, const Series& column, double sig
          std::ranges::any_of(
              all.run.events,
              [&](const Event& event) { return event.kind == "singular_pose" && event.t >= t[known - 1]; }) ||
-         (column.name.starts_with("axial_force_m") &&
-          !rod_humps(all.run.trajectory, all.diagnostics, sign).empty());
+         !rod_humps(all.run.trajectory, all.diagnostics, column.name, sign).empty();
 }
 
 // In the coordinates of the model at the start; nothing is looked for around these states any more. What was
