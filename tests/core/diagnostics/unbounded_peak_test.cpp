@@ -8,6 +8,7 @@
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/rod_peaks.hpp"
+#include "core/diagnostics/rod_strength.hpp"
 #include "core/path/path_run.hpp"
 #include "core/scene/library.hpp"
 #include "core/simulate/singular_poses.hpp"
@@ -35,15 +36,16 @@ Simulation with_poses(Simulation run) {
 const std::string scissors = R"toml(
 variables = {L = 0.5, th = 0.5}
 structure.kind = "custom"
+structure.youngs_modulus = 2e11
 structure.nodes = [{name = "A0", position = [0,0,0], fixed = true},
   {name = "B0", position = [0,0,"=2*L*cos(th)"]},
   {repeat = {i = "0:2"}, name = "M{i}", position = ["=(2*i+1)*L*sin(th)",0,"=L*cos(th)"]},
   {repeat = {i = "1:3"}, name = "A{i}", position = ["=2*i*L*sin(th)",0,0]},
   {repeat = {i = "1:3"}, name = "B{i}", position = ["=2*i*L*sin(th)",0,"=2*L*cos(th)"]}]
-structure.rods = [{repeat = {i = "0:2"}, nodes = ["A{i}","M{i}"], mass = 0.2},
-  {repeat = {i = "0:2"}, nodes = ["M{i}","B{i+1}"], mass = 0.2},
-  {repeat = {i = "0:2"}, nodes = ["B{i}","M{i}"], mass = 0.2},
-  {repeat = {i = "0:2"}, nodes = ["M{i}","A{i+1}"], mass = 0.2}]
+structure.rods = [{repeat = {i = "0:2"}, nodes = ["A{i}","M{i}"], mass = 0.2, area = 1.3e-5},
+  {repeat = {i = "0:2"}, nodes = ["M{i}","B{i+1}"], mass = 0.2, area = 1.3e-5},
+  {repeat = {i = "0:2"}, nodes = ["B{i}","M{i}"], mass = 0.2, area = 1.3e-5},
+  {repeat = {i = "0:2"}, nodes = ["M{i}","A{i+1}"], mass = 0.2, area = 1.3e-5}]
 constraints = [{kind = "plane", nodes = ["*"], normal = [0,1,0]},
   {repeat = {i = "0:2"}, kind = "collinear", nodes = ["A{i}","B{i+1}","M{i}"]},
   {repeat = {i = "0:2"}, kind = "collinear", nodes = ["B{i}","A{i+1}","M{i}"]},
@@ -83,7 +85,11 @@ TEST_CASE("a bundle of scissors is passed with a force that has no bound, full a
       const Simulation run =
           with_poses(path ? simulate_on_path(model, scene.solver) : simulate(model, scene.solver));
       const Diagnostics d = diagnose(run);
-      CHECK_FALSE(peak_rod_force(run, d).unique);
+      const PeakForce peak = peak_rod_force(run, d);
+      const WorstRod stress = worst_rod(run, d, axial_stress);
+      CHECK_FALSE(peak.unique);
+      CHECK_FALSE(stress.unique);
+      CHECK(stress.value == Approx(peak.force_N / 1.3e-5).epsilon(1e-12));
       CHECK(warns(run, d));
     }
 }
