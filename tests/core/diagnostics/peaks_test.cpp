@@ -8,6 +8,7 @@
 
 #include "core/diagnostics/measures.hpp"
 #include "core/diagnostics/rod_peaks.hpp"
+#include "core/diagnostics/rod_strength.hpp"
 #include "core/path/path_run.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
@@ -259,8 +260,9 @@ TEST_CASE("a peak in a singular pose is that of the motion through it") {
 TEST_CASE("a peak beside a singular pose is that of smooth forces at every step") {
   const auto opened = [](double step) {
     const Scene scene = read_scene_file(
-        find_scene("scissor_mast"), {"structure.cells=1", "structure.tip_force=-20", "solver.end_time=0.65",
-                                     "solver.stages=4", "solver.step=" + std::to_string(step)});
+        find_scene("scissor_mast"),
+        {"structure.cells=1", "structure.tip_force=-20", "solver.end_time=0.65",
+         "structure.youngs_modulus=2e11", "solver.stages=4", "solver.step=" + std::to_string(step)});
     return simulate(build_model(scene), scene.solver);
   };
   // The polynomial through states from 1 to 3 ms away on either side, where the pose does not matter.
@@ -284,6 +286,9 @@ TEST_CASE("a peak beside a singular pose is that of smooth forces at every step"
     const PeakForce peak = peak_rod_force(run, d, Pull::either);
     CHECK(measured("peak_rod_force", run) == Approx(most).epsilon(5e-6));
     CHECK(std::abs(peak.force_N) == Approx(measured("peak_rod_force", run)).epsilon(1e-7));
+    const WorstRod stress = worst_rod(run, d, axial_stress);
+    CHECK(stress.value == Approx(peak.force_N / 4e-4).epsilon(1e-7));
+    CHECK(stress.t == Approx(peak.t).epsilon(0).margin(1e-5));
   }
 }
 
