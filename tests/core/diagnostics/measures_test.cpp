@@ -335,4 +335,98 @@ TEST_CASE("extremes of columns are said to be open where the measures of the sam
   CHECK_THROWS_AS(find_measure("max:no_force_N_unique", {"axial_force_max_N"}), StudyError);
 }
 
+// Three rods along guides at rest, of which loads pull two and push one more and more, and a pendulum that
+// swings from rest through its lowest point. The second tie bears most, the first one has the largest stress.
+TEST_CASE("a stress is as unique as the force of the rod that has it at the states around") {
+  const Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+youngs_modulus = 2e11
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1.1, 0, 0], mass = 1},
+  {name = "B", position = [0, 1.2, 0], mass = 1}, {name = "C", position = [0, 0, 1.3], mass = 1}]
+rods = [{name = "first", nodes = ["O", "A"], mass = 0, area = 1.1e-5},
+        {name = "second", nodes = ["O", "B"], mass = 0, area = 3.3e-5},
+        {name = "strut", nodes = ["O", "C"], mass = 0, area = 2.2e-5}]
+constraints = [{kind = "line", nodes = ["A"], direction = [1, 0, 0]},
+  {kind = "line", nodes = ["B"], direction = [0, 1, 0]}, {kind = "line", nodes = ["C"], direction = [0, 0, 1]}]
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [70, 0, 0]
+times = [0, 1]
+values = [0.2, 1]
+[[forces]]
+kind = "load_over_time"
+nodes = ["B"]
+force = [0, 110, 0]
+times = [0, 1]
+values = [0.3, 1]
+[[forces]]
+kind = "load_over_time"
+nodes = ["C"]
+force = [0, 0, -90]
+times = [0, 1]
+values = [0.1, 1]
+[solver]
+step = 0.1
+end_time = 1
+)");
+  const Diagnostics d = diagnose(run);
+  const Index last = d.axial_force.rows() - 1;
+  const auto unique = [&](const char* column, Index state, Index rod) {
+    Diagnostics open = d;
+    open.force_unique(state, rod) = false;
+    return find_measure(uniqueness_of(column)).value(run, open);
+  };
+  const char *pull = "max:axial_stress_max_Pa", *push = "min:axial_stress_min_Pa";
+  CHECK(find_measure(pull).value(run, d) == Approx(70 / 1.1e-5).epsilon(1e-9));
+  CHECK(find_measure(push).value(run, d) == Approx(-90 / 2.2e-5).epsilon(1e-9));
+  CHECK(unique(pull, last, 0) == 0);
+  CHECK(unique(pull, last, 1) == 1);
+  CHECK(unique(pull, last, 2) == 1);
+  CHECK(unique(push, last, 2) == 0);
+  CHECK(unique(push, last, 0) == 1);
+  CHECK(unique(push, last, 1) == 1);
+  for (Index state = 0; state < last; ++state) CHECK(unique(pull, state, 0) == 1);
+  // The largest of what is pressed least, at the start.
+  CHECK(unique("max:axial_stress_min_Pa", 0, 2) == 0);
+  CHECK(unique("max:axial_stress_min_Pa", 1, 2) == 1);
+
+  Diagnostics hidden = d;
+  hidden.rod_shown = {0, 1, 1};
+  hidden.force_unique(last, 0) = false;
+  CHECK(find_measure(uniqueness_of(pull)).value(run, hidden) == 1);
+  hidden.force_unique(last, 1) = false;
+  CHECK(find_measure(uniqueness_of(pull)).value(run, hidden) == 0);
+}
+
+TEST_CASE("a stress within a step is as unique as that of the states at its ends") {
+  const Simulation run = testing::run_scene(R"toml(
+[structure]
+kind = "custom"
+youngs_modulus = 2e11
+nodes = [{name = "O", position = [0, 0, 0], fixed = true},
+         {name = "A", position = ["=0.9*sin(67*deg)", 0, "=-0.9*cos(67*deg)"], mass = 1.3}]
+rods = [{nodes = ["O", "A"], mass = 0, area = 1.1e-6}]
+constraints = [{kind = "plane", nodes = ["A"], normal = [0, 1, 0]}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+stages = 6
+step = 0.08
+end_time = 0.8
+)toml");
+  const Diagnostics d = diagnose(run);
+  Index before = 0;  // the bob passes its lowest point
+  while (run.trajectory.node_positions(static_cast<std::size_t>(before) + 1)[3] > 0) ++before;
+  REQUIRE(before > 1);
+  for (Index state = 0; state < d.axial_force.rows(); ++state) {
+    INFO(state << " of " << before);
+    Diagnostics open = d;
+    open.force_unique(state, 0) = false;
+    CHECK((find_measure(uniqueness_of("max:axial_stress_max_Pa")).value(run, open) == 0) ==
+          (state == before || state == before + 1));
+  }
+}
+
 }  // namespace measures_test
