@@ -20,7 +20,6 @@ using Panel = Eigen::Array<double, gauss, 1>;
 // Two halves that agree so well with the whole are right to the square of that and more.
 constexpr double agree = 1e-9;
 constexpr int most_halvings_of_time = 40;
-constexpr double there = 1e-12;  // what rounding leaves of the deployed pose, as a share of the way
 
 struct Rule16 {
   Panel node, weight;
@@ -118,10 +117,11 @@ struct PathLook {
 // measured need not be: an angle without an axis has a kink where its sides lie in line, a distance at zero.
 class DeployedSearch {
  public:
-  DeployedSearch(const Path& path, const Deployment& deployment) : path_(path), deployment_(deployment) {}
+  DeployedSearch(const Path& path, const Deployment& deployment, const ConstVec& start)
+      : path_(path), deployment_(deployment), rounded_(deployment.rounded(start)) {}
 
   // Where it falls to zero.
-  std::optional<double> crossing(const PathLook& above, const PathLook& below) const {
+  double crossing(const PathLook& above, const PathLook& below) const {
     double low = above.s, high = below.s;
     for (int it = 0; it < 60; ++it) {
       const double middle = 0.5 * (low + high);
@@ -130,12 +130,12 @@ class DeployedSearch {
     return high;
   }
 
-  // Where it is least between them, if there it is zero or less.
-  std::optional<PathLook> dip(const PathLook& a, const PathLook& b) const {
+  // Where it falls to zero, or is least and that is zero, between them.
+  std::optional<double> dip(const PathLook& a, const PathLook& b) const {
     const double s = golden_section([&](double at) { return left(at, a.angles); }, a.s, b.s, 60);
-    PathLook least{s, left(s, a.angles), {}};
-    if (least.left > there) return std::nullopt;
-    return least;
+    const PathLook least{s, left(s, a.angles), {}};
+    if (least.left > rounded_) return std::nullopt;
+    return least.left < -rounded_ ? crossing(a, least) : s;
   }
 
  private:
@@ -149,6 +149,7 @@ class DeployedSearch {
 
   const Path& path_;
   const Deployment& deployment_;
+  double rounded_;
 };
 
 }  // namespace
@@ -176,7 +177,9 @@ double time_from_rest(const Path& path, const VectorXd& force, double from, doub
 std::optional<double> deployed_pose(const Path& path, const Deployment& deployment, bool forward,
                                     long most_pieces) {
   const VectorXd x = chebyshev_points(Path::degree);
-  const DeployedSearch search(path, deployment);
+  const PathPiece* first = path.piece(forward ? 0 : -1);
+  if (!first) return std::nullopt;
+  const DeployedSearch search(path, deployment, first->q.col(0));
   PathLook last{0, 0, deployment.first_angles()}, before = last;
   int looks = 0;  // since the deployment was first ahead
   for (long k = 0; k < most_pieces; ++k) {
@@ -192,7 +195,7 @@ std::optional<double> deployed_pose(const Path& path, const Deployment& deployme
         looks = 0;  // through the opposite pose: deployed comes from the other side
       }
       if (looks > 1 && last.left <= before.left && last.left < now.left)
-        if (const auto dip = search.dip(before, now)) return search.crossing(before, *dip);
+        if (const auto dip = search.dip(before, now)) return dip;
       looks += looks > 0 || now.left > 0;
       before = std::exchange(last, std::move(now));
     }

@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/structure/node_positions.hpp"
+
 namespace unfurl {
 namespace {
 
 // As the time loop has them (simulate/stepper_loop.hpp): the deployed pose counts as reached anew from this
 // sine of the fold angle on; what is met with it.
-constexpr double singular_margin = 1e-4, deployed_already = 1e-12, at_once = 1e-8;
+constexpr double singular_margin = 1e-4, at_once = 1e-8;
 constexpr double now = 1e-12;          // of a step
-constexpr double no_rate = 1e-6;       // a rate that is none, in a step
-constexpr double deployed_at = 1e-12;  // what rounding leaves of the deployed pose, as a share of the way
+constexpr double no_rate = 1e-11;      // a rate that is none, in a step
 constexpr int samples = 24;            // within a step
 constexpr double never_moves = 1e-11;  // over a piece of the path, of a turn or of the structure's length
 
@@ -24,7 +25,8 @@ PathWatch::PathWatch(const Structure& structure, const OneSided& sides, double s
       folds_(!structure.deployment.measured),
       step_(step),
       shift_(sides.stops().size(), 0.0),
-      margin_(singular_margin) {
+      margin_(singular_margin),
+      rounded_(structure.deployment.rounded(node_positions(structure))) {
   for (const Force& force : structure.forces)
     if (force.kind == "friction" && force.holding > 0) frictions_.push_back(force.measure);
 }
@@ -45,7 +47,7 @@ void PathWatch::begin(const State& start, const System& system) {
     shift_[i] = std::min(0.0, sides_.stops().gap(i, system, start));
   if (!deploys_) return;
   const double fold = remaining(0.0);
-  if (fold > deployed_already) margin_ = std::min(singular_margin, 0.1 * fold);
+  if (fold > rounded_) margin_ = std::min(singular_margin, 0.1 * fold);
   armed_ = fold > margin_;
 }
 
@@ -154,27 +156,35 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
     if (a[i] < -1 || pressed(motion, from, to, i, a[i])) return {from, static_cast<int>(i)};
   std::pair<double, int> first{to, -1};
   double t0 = from;
+  // The deployed pose is passed where rounding does not say so, or at speed. Slower than that, as a share of
+  // the way in a step, it may be a dead centre or the end of a drive.
+  const double slow = 2 * std::sqrt(rounded_);
   for (const double t1 : looked_at(motion, from, to)) {
     margins(motion, t1, b, rates_b);
     if (a[deployed] > margin_) armed_ = true;
-    const bool turns_back = rates_b[deployed] > 0 && b[deployed] > deployed_at;
-    if (armed_ && std::abs(a[deployed]) <= deployed_at && turns_back) return {t0, static_cast<int>(deployed)};
+    const bool turned_back = !(rates_a[deployed] < 0) && rates_b[deployed] > 0 && b[deployed] > rounded_;
+    if (armed_ && std::abs(a[deployed]) <= rounded_ && turned_back) return {t0, static_cast<int>(deployed)};
     if (armed_ && folds_ && b[deployed] <= 0 && !is_fold_passed(a[deployed], b[deployed])) armed_ = false;
-    const auto below = [&](Index i, double m) { return i < deployed ? m < -1 : armed_ && m <= 0; };
+    const auto below = [&](Index i, double m, double rate) {
+      return i < deployed ? m < -1 : armed_ && (m < -rounded_ || (m <= 0 && rate * step_ < -slow));
+    };
     for (Index i = 0; i <= deployed; ++i) {
       double end = t1, left = b[i];
       // At a dead centre, or where the motion turns.
-      const auto touched = [&] { return i == deployed && armed_ && std::abs(left) <= deployed_at; };
-      bool touches = touched() && left <= 0 && std::abs(rates_b[i]) * step_ <= no_rate;
-      if (!below(i, left) && rates_a[i] < 0 && rates_b[i] > 0) {
+      const auto touched = [&] { return i == deployed && armed_ && std::abs(left) <= rounded_; };
+      bool touches =
+               touched() && std::abs(rates_b[i]) * step_ <= no_rate && a[i] + rates_a[i] * (t1 - t0) < 0,
+           is_below = below(i, left, rates_b[i]);
+      if (!is_below && rates_a[i] < 0 && rates_b[i] > 0) {
         // It cannot have fallen further than at the steeper of both rates.
         const double reach = std::max(-rates_a[i], rates_b[i]) * (t1 - t0);
-        if (!below(i, std::min(a[i], b[i]) - reach)) continue;
+        if (std::min(a[i], b[i]) - reach > (i == deployed ? rounded_ : -1)) continue;
         end = least_between(motion, i, t0, t1);
         left = margin(motion, end, i);
         touches = touched();
+        is_below = below(i, left, 0.0);
       }
-      if ((!below(i, left) && !touches) || !(a[i] > left)) continue;
+      if (!touches && !(is_below && a[i] > left)) continue;
       double t = touches ? end : zero_of(motion, i, t0, end);
       if (t - from <= now * step_) t = from;  // rounding puts it there
       const double tie = i == deployed ? at_once * step_ : 0;
@@ -187,7 +197,7 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
   }
   // A drive that ends in the deployed pose stays within rounding of it, whose sign is no event.
   if (edge && armed_ && (first.second < 0 || first.second == deployed)) {
-    constexpr double nothing = 1e-9;
+    const double nothing = std::max(1e-9, rounded_);
     margins(motion, to, b, rates_b);
     if (std::abs(b[deployed]) <= nothing && std::abs(rates_b[deployed]) * step_ <= nothing)
       first = {to, static_cast<int>(deployed)};

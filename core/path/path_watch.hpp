@@ -64,7 +64,7 @@ class PathWatch {
   std::vector<Index> friction_columns_;
   std::vector<double> shift_;
   Index deployed_column_ = -1;
-  double margin_ = 0;
+  double margin_ = 0, rounded_ = 0;  // of the deployed pose; rounded_: Deployment::rounded()
   bool armed_ = false, deployed_ = false;
 };
 

@@ -55,7 +55,7 @@ std::optional<State> step_to_deployed(const Model& model, Integrator& integrator
 }
 
 std::optional<Dip> step_to_dip(const Model& model, const std::function<std::unique_ptr<Integrator>()>& fresh,
-                               const State& from, const State& to, double h, double margin,
+                               const State& from, const State& to, double h, double rounded,
                                const Probe* behind) {
   if (!deploys_regularly(model.structure)) return std::nullopt;
   struct At {
@@ -64,21 +64,20 @@ std::optional<Dip> step_to_dip(const Model& model, const std::function<std::uniq
   VectorXd q(model.system.coordinates());
   const auto at = [&](double length, const State& state) {
     model.system.expand(state.z, q);
-    return At{length, model.structure.deployment.remaining(q, state.angles) - margin,
-              remaining_rate(model, state)};
+    return At{length, model.structure.deployment.remaining(q, state.angles), remaining_rate(model, state)};
   };
   // A fall at twice the first rate would get there. (Tangents are no bound: an angle without an axis has a
   // kink where its sides lie in line, and may bend either way on both sides of it.)
-  const auto may_dip = [](const At& a, const At& b) {
-    return a.left > 0 && b.left > 0 && a.rate < 0 && b.rate > 0 &&
-           a.left + 2 * a.rate * (b.length - a.length) <= 0;
+  const auto may_dip = [rounded](const At& a, const At& b) {
+    return a.left > rounded && b.left > -rounded && a.rate < 0 && b.rate > 0 &&
+           a.left + 2 * a.rate * (b.length - a.length) <= rounded;
   };
   At low = behind ? at(behind->at, behind->state) : at(0, from), high = at(h, to);
   if (!may_dip(low, high)) return std::nullopt;
   const std::unique_ptr<Integrator> integrator = fresh();
   constexpr int most = 60;
   constexpr double settled = 1e-14;  // of the step
-  std::optional<Dip> touched;        // within the margin, which is rounding
+  std::optional<Dip> touched;
   for (int i = 0; i < most && (touched || may_dip(low, high)); ++i) {
     // The rate's zero by its secant, and every third time by halves.
     const double secant = low.length - low.rate * (high.length - low.length) / (high.rate - low.rate);
@@ -88,9 +87,9 @@ std::optional<Dip> step_to_dip(const Model& model, const std::function<std::uniq
     if (!(length > low.length && length < high.length) || !integrator->step(state, length).ok())
       return touched;
     const At middle = at(length, state);
-    if (middle.left < -2 * margin) return Dip{length};
+    if (middle.left < -rounded) return Dip{length};
     const double change = touched ? std::abs(length - touched->length) : h;
-    if (middle.left <= 0) touched = Dip{length, true};
+    if (middle.left <= rounded) touched = Dip{length, true};
     if (change <= settled * h) return touched;
     (middle.rate < 0 ? low : high) = middle;
   }

@@ -17,14 +17,13 @@ namespace unfurl {
 // what the method drifts from the drive, and whose sign that has says nothing.
 bool Stepper::Loop::arrives(const Probe& to) {
   constexpr double nothing = 1e-9, at_rest = 1e-2;  // rates are off by what a method makes of them
-  if (!edge_ || part_end_ != target_ || margin_ > stepping::deployed_already || fold(now()) <= margin_)
-    return false;
+  if (!edge_ || part_end_ != target_ || margin_ > rounded_ || fold(now()) <= margin_) return false;
   const VectorXd& lengths = system().constraint_lengths();
   VectorXd phi(lengths.size());
   system().expand(to.state.z, q_);
   system().at(to.state).constraint(part_end_, q_, phi);
   const double drift = phi.size() > 0 ? phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() : 0.0;
-  return std::abs(fold(to.state)) <= nothing + 2 * drift &&
+  return std::abs(fold(to.state)) <= std::max(nothing, rounded_) + 2 * drift &&
          std::abs(remaining_rate(model(), to.state)) * run_.options.step <= at_rest;
 }
 
@@ -75,7 +74,7 @@ std::optional<Dip> Stepper::Loop::dip_inside(const Probe& to) {
     if (fold(before.state) <= margin_) return Dip{before.at};
     if (fold(after.state) <= margin_) return Dip{after.at};
     const auto bottom = step_to_dip(
-        model(), [this] { return fresh_integrator(); }, now(), after.state, after.at, margin_, &before);
+        model(), [this] { return fresh_integrator(); }, now(), after.state, after.at, rounded_, &before);
     if (bottom) return bottom;
   }
   return {};
@@ -83,16 +82,14 @@ std::optional<Dip> Stepper::Loop::dip_inside(const Probe& to) {
 
 // Where the pose is touched as a step ends, rounding says on which side of that.
 std::optional<Dip> Stepper::Loop::dip_at_end(const Probe& to, double h) {
-  if (!deploys_regularly(model().structure) || margin_ > stepping::deployed_already ||
-      fold(now()) <= margin_ || std::abs(fold(to.state)) > 2 * margin_)
+  if (!deploys_regularly(model().structure) || margin_ > rounded_ || fold(now()) <= rounded_ ||
+      std::abs(fold(to.state)) > 2 * rounded_)
     return {};
   State behind = now();
   const double longer = 1.1 * h;
-  if (behind.t + longer > next_edge() || !fresh_integrator()->step(behind, longer).ok() ||
-      fold(behind) <= margin_)
-    return {};
+  if (behind.t + longer > next_edge() || !fresh_integrator()->step(behind, longer).ok()) return {};
   return step_to_dip(
-      model(), [this] { return fresh_integrator(); }, now(), behind, longer, margin_);
+      model(), [this] { return fresh_integrator(); }, now(), behind, longer, rounded_);
 }
 
 // The deployed pose where this step reaches it; a step that failed without that is tried in parts. False
@@ -117,7 +114,7 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
   }
   if (event || !to.report.ok() || deployment_.empty() || deployed_) return true;
   // What a drive leads may come to rest in the deployed pose: near is not there.
-  if (margin_ > stepping::deployed_already && crosses(to.state) && !system().drives().empty() &&
+  if (margin_ > rounded_ && crosses(to.state) && !system().drives().empty() &&
       regular_when_deployed(run_.trajectory, to.state))
     margin_ = stepping::deployed_already;
   if (arrives(to)) {
@@ -129,7 +126,7 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
   if (!dip) dip = dip_at_end(to, h);
   if (!dip && !crosses(to.state)) {
     dip = step_to_dip(
-        model(), [this] { return fresh_integrator(); }, now(), to.state, h, margin_);
+        model(), [this] { return fresh_integrator(); }, now(), to.state, h, rounded_);
     if (!dip) return true;
   }
   touched_ = dip && dip->touches;

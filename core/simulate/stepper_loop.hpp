@@ -27,6 +27,7 @@
 #include "core/simulate/time_grid.hpp"
 #include "core/simulate/turned_frame.hpp"
 #include "core/simulate/turning_back.hpp"
+#include "core/structure/node_positions.hpp"
 
 namespace unfurl {
 namespace stepping {
@@ -72,6 +73,7 @@ class Stepper::Loop {
         base_(original_),
         present_(original_),
         deployment_(run.trajectory.structure().deployment),
+        rounded_(deployment_.rounded(node_positions(run.trajectory.structure()))),
         sides_(run.trajectory.structure(), run.options),
         turning_back_(run.trajectory.structure()),
         turned_(run.trajectory.structure()),
@@ -81,8 +83,8 @@ class Stepper::Loop {
   void begin_run() {
     model_changed();
     if (deploys_regularly(original_->structure)) margin_ = stepping::deployed_already;
-    if (!deployment_.empty() && fold(now()) > stepping::deployed_already)
-      margin_ = std::min(margin_, 0.1 * fold(now()));
+    if (!deployment_.empty())
+      margin_ = fold(now()) > rounded_ ? std::min(margin_, 0.1 * fold(now())) : std::max(margin_, rounded_);
     if (!sides_.empty()) find_first_modes();
   }
 
@@ -447,6 +449,7 @@ class Stepper::Loop {
   std::shared_ptr<const Model> base_;      // the model without what is held or pulls
   std::shared_ptr<const Model> present_;   // the last one of the trajectory
   const Deployment& deployment_;
+  double rounded_;  // what of the way to the deployed pose is nothing
   OneSided sides_;
   TurningBack turning_back_;
   TurnedFrame turned_;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "core/structure/measure.hpp"
 #include "core/structure/node_positions.hpp"
@@ -93,6 +95,26 @@ double Deployment::remaining_rate(const ConstVec& q, const ConstVec& v) const {
   const double c = std::cos(deployed_fold_angle), s = std::sin(deployed_fold_angle),
                rate = c * fold_sine.rate(v) - s * fold_cosine.rate(v);
   return c * fold_cosine(q) + s * fold_sine(q) >= 0 ? rate : -rate;
+}
+
+double Deployment::rounded(const ConstVec& q) const {
+  constexpr double nothing = 1e-12, ulps = 16 * std::numeric_limits<double>::epsilon();
+  double largest = 0, by_coordinates = 0;  // of their nodes; sum of the derivatives' sizes
+  const auto add = [&](int node, double derivative) {
+    largest = std::max(largest, q.segment<3>(3 * node).lpNorm<Eigen::Infinity>());
+    by_coordinates += derivative;
+  };
+  if (measured) {
+    const MeasureFunction function = function_of(*this);
+    std::vector<double> gradient(function.stencil().size());
+    function.value_and_gradient(q.data(), gradient.data());
+    for (std::size_t i = 0; i < gradient.size(); ++i)
+      add(function.stencil()[i] / 3, std::abs(gradient[i] / (deployed - stowed)));
+  } else {
+    for (std::size_t i = 0; i < fold_sine.nodes.size(); ++i)
+      add(fold_sine.nodes[i], fold_sine.coefficients[i].lpNorm<1>());
+  }
+  return std::max(nothing, ulps * largest * by_coordinates);
 }
 
 bool is_fold_passed(double left_before, double left_after) {

@@ -216,6 +216,9 @@ struct Deployment {
   double remaining(const ConstVec& q, const VectorXd& angles = {}) const;
   double remaining_rate(const ConstVec& q, const ConstVec& v) const;
   bool is_passed(double left_before, double left_after) const;  // is_fold_passed(), of a measure always
+  // What of remaining() counts as nothing: a fixed share, and far from the origin what rounding coordinates
+  // as large as those of this pose leaves of it.
+  double rounded(const ConstVec& q) const;
   // The measure's angles that count turns: those at t = 0, and in a pose from those of one that is less than
   // half a turn away.
   VectorXd first_angles() const;
