@@ -150,24 +150,18 @@ class PathRun {
     VectorXd z, tangent, q(base_->system.coordinates());
     path_->point(s, z, tangent);
     const ScalarLaw::Value law = law_->at(s, v, 0.0);
-    const double along_path = drive_.there() ? a_on_drive(0.0) : law.Q;
+    const VectorXd bend = v * v * piece.bend(x);
+    double along_path = law.Q;
+    if (drive_.there())  // m'' s'^2 + m' s'' = f''
+      along_path = (drive_.target.derivative(2, 0.0) -
+                    driven_second_rate(structure(), path_->system(), z, v * tangent, bend)) /
+                   law_->table().at(drive_.column, s).slope;
     double sum = law.scale + free_acceleration(followed, structure(), state, lambda) + v * v / path_->unit();
-    path_->system().expand_rate(along_path * tangent + v * v * piece.bend(x), q);
+    path_->system().expand_rate(along_path * tangent + bend, q);
     const VectorXd in_model = base_->system.reduce_rate(q);
     const auto size = [&](const VectorXd& u) { return std::sqrt(u.dot(followed.mass() * u)); };
     if (!(size(a - in_model) <= same_equations * (size(a) + size(in_model)) + rounded_sum * sum))
       throw PathRefused("the equations of motion hold something that the path does not know");
-  }
-
-  // s'' that a drive asks for: f'' = m'' s'^2 + m' s''.
-  double a_on_drive(double t) const {
-    double s = 0, v = 0;
-    motion_.at(t, s, v);
-    const double h = 1e-3 * (path_->piece(0)->b - path_->piece(0)->a);
-    const double bent =
-        (law_->table().at(drive_.column, s + h).slope - law_->table().at(drive_.column, s - h).slope) /
-        (2 * h);
-    return (drive_.target.derivative(2, t) - bent * v * v) / law_->table().at(drive_.column, s).slope;
   }
 
   // --- states ---

@@ -6,6 +6,7 @@
 #include "core/path/path_forces.hpp"
 #include "core/simulate/push_responses.hpp"
 #include "core/simulate/run_words.hpp"
+#include "core/structure/measure.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/system/mobility.hpp"
 
@@ -30,6 +31,19 @@ const Constraint* driven_row(const Structure& structure) {
     found = &constraint;
   }
   return found;
+}
+
+double driven_second_rate(const Structure& structure, const System& system, const VectorXd& z,
+                          const VectorXd& rate, const VectorXd& second_rate) {
+  if (rate.isZero(0) && second_rate.isZero(0)) return 0;  // also where a measure has a kink
+  const MeasureFunction measure(driven_row(structure)->measure, structure.deployment);
+  VectorXd q(system.coordinates()), dq(q.size()), ddq(q.size()),
+      gradient(static_cast<Index>(measure.stencil().size()));
+  system.expand(z, q);
+  system.expand_rate(rate, dq);
+  system.expand_rate(second_rate, ddq);
+  measure.value_and_gradient(q.data(), gradient.data());
+  return measure.curvature_along(q.data(), dq.data()) + measure.rate(gradient.data(), ddq.data());
 }
 
 namespace {

@@ -9,6 +9,9 @@ namespace unfurl {
 
 // The row that prescribes a motion; nullptr where none does. Throws PathRefused where there are several.
 const Constraint* driven_row(const Structure& structure);
+// The second derivative of what it prescribes, along poses z of these derivatives.
+double driven_second_rate(const Structure& structure, const System& system, const VectorXd& z,
+                          const VectorXd& rate, const VectorXd& second_rate);
 
 // The equations of a model without the row that drives it; that of the model where nothing does. Throws
 // PathRefused where the path cannot describe the model: more or fewer ways to move than one, what it does not

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Drives on the path, up to what the structure can reach and beyond.
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include "core/path/path_run.hpp"
 #include "core/study/tolerance.hpp"
@@ -100,6 +104,36 @@ TEST_CASE("a drive may go far in a step") {
     const Simulation run = simulate_on_path(build_model(scene), scene.solver);
     CHECK(run.status == RunStatus::completed);
     CHECK(length_at_end(run) == Approx(2.001).epsilon(1e-14));
+  }
+}
+
+// A crank of 0.3 m that is turned at 90 deg/s from the start, a rod of 1 m and a slider on the crank's level.
+TEST_CASE("a drive that sets out at speed is followed as far from the origin as the path is") {
+  const double pi = std::acos(-1.0), r = 0.3, from = -1, until = 0.7;
+  for (const double far : {0.0, 30.0, 130.0, 2.1e3, 1.7e4, 3.3e5}) {
+    CAPTURE(far);
+    const auto slider = [&](double angle) {
+      return far + r * std::cos(angle) + std::sqrt(1 - std::pow(r * std::sin(angle), 2));
+    };
+    const auto at = [](double x, double y) { return "[" + number(x) + ", " + number(y) + ", 0]"; };
+    const Scene scene = read_scene_text(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = " + at(far, 0) +
+            ", fixed = true}, {name = 'X', position = " + at(far + 1, 0) +
+            ", fixed = true}, {name = 'A', mass = 1, position = " +
+            at(far + r * std::cos(from), r * std::sin(from)) +
+            "}, {name = 'B', mass = 0.5, position = " + at(slider(from), 0) +
+            "}]\nrods = [{nodes = ['O', 'A'], mass = 0, length = 0.3}, {nodes = ['A', 'B'], mass = 0, length "
+            "= 1}]\n[[constraints]]\nkind = 'angle'\nnodes = ['X', 'O', 'A']\naxis = [0, 0, 1]\nmotion = "
+            "'rate'\nrate = 90\n[[constraints]]\nkind = 'line'\nnodes = ['B']\ndirection = [1, 0, 0]\n"
+            "[[constraints]]\nkind = 'plane'\nnodes = ['A']\nnormal = [0, 0, 1]\n[solver]\nstep = 0.01\n"
+            "end_time = " +
+            number(until) + "\n",
+        "s.toml");
+    const Simulation run = simulate_on_path(build_model(scene), scene.solver);
+    REQUIRE(run.status == RunStatus::completed);
+    // Rounding of each coordinate, over this size and in a table's sums of 25.
+    const double rounding = 1e-13 + 25 * std::numeric_limits<double>::epsilon() * far;
+    CHECK(std::abs(testing::end_positions(run)[9] - slider(from + 0.5 * pi * until)) <= rounding);
   }
 }
 
