@@ -2,6 +2,7 @@
 #include "core/diagnostics/accuracy.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -347,7 +348,9 @@ std::string words_of_large_stretch(const Trajectory& trajectory) {
 double followed_turn(const SolverOptions& options) {
   if (options.method == "generalized_alpha") return 0.1;
   if (options.method != "dvm") return 0.5;
-  return options.stages < 3 ? 0.1 : options.stages == 3 ? 0.9 : options.stages == 4 ? 2.0 : 2.5;
+  if (options.constraints_at == "ends") return 0.1;
+  constexpr std::array by_stages{0.1, 0.9, 2.0, 2.5, 3.0, 4.5, 5.5};  // of two and more
+  return by_stages[static_cast<std::size_t>(std::clamp(options.stages, 2, 8) - 2)];
 }
 
 // The energy does not see such an error: a rod that turns freely keeps it at any step.
@@ -362,7 +365,10 @@ std::string words_of_turns(const Simulation& run) {
   text << "rods turn by up to " << most * options.step << " rad within a step of " << options.step
        << " s (t = " << run.trajectory.time(i)
        << " s), which the steps do not follow, however well the energy is kept: take solver.step <= "
-       << followed / most << (options.method == "dvm" ? ", or more solver.stages" : "")
+       << followed / most
+       << (options.method != "dvm"            ? ""
+           : options.constraints_at == "ends" ? ", or solver.constraints_at = \"nodes\""
+                                              : ", or more solver.stages")
        << ", or solver.adaptive = true";
   return text.str();
 }

@@ -199,14 +199,14 @@ TEST_CASE("a balance that rounding alone can put off is said to check nothing, a
 TEST_CASE("steps in which rods turn farther than a method follows are told") {
   // A bar turns freely about its end at 1 rad/s, twenty steps: its energy is kept at any step, its angle is
   // t.
-  const auto turned = [](double h, int stages, const std::string& method) {
+  const auto turned = [](double h, int stages, const std::string& method, const std::string& at) {
     const std::string step = std::to_string(h), end = std::to_string(20 * h);
     const Judged j = judged(read_scene_text(
         "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true},"
         "{name = 'B', position = [1, 0, 0], mass = 1, velocity = [0, 1, 0]}]\n"
         "rods = [{nodes = ['A', 'B'], mass = 1}]\n[solver]\nmethod = '" +
             method + "'\nstages = " + std::to_string(stages) + "\nstep = " + step + "\nend_time = " + end +
-            "\n",
+            "\n" + at,
         "bar.toml", {}));
     const VectorXd q = j.run.trajectory.node_positions(j.run.trajectory.size() - 1);
     const double t = j.run.trajectory.end_time();
@@ -214,9 +214,10 @@ TEST_CASE("steps in which rods turn farther than a method follows are told") {
     const bool warned = !accuracy_warnings(j.run, j.d).empty();
     return std::pair(warned, off / (t / (2 * std::numbers::pi)));  // off with every revolution
   };
-  const auto check = [&](int stages, const std::string& method, double fine, double coarse) {
-    INFO(method << ", " << stages << " stages");
-    const auto small = turned(fine, stages, method), large = turned(coarse, stages, method);
+  const auto check = [&](int stages, const std::string& method, double fine, double coarse,
+                         const std::string& at = "") {
+    INFO(method << ", " << stages << " stages " << at);
+    const auto small = turned(fine, stages, method, at), large = turned(coarse, stages, method, at);
     CHECK(!small.first);
     CHECK(small.second < 0.01);
     CHECK(large.first);
@@ -226,6 +227,9 @@ TEST_CASE("steps in which rods turn farther than a method follows are told") {
   check(3, "dvm", 0.7, 1.0);
   check(4, "dvm", 1.5, 2.2);
   check(5, "dvm", 2.0, 3.0);
+  check(6, "dvm", 2.9, 3.5);
+  check(8, "dvm", 5.4, 7.0);
+  for (const int stages : {3, 6, 8}) check(stages, "dvm", 0.09, 0.3, "constraints_at = 'ends'\n");
   check(3, "rk4", 0.3, 0.6);
   check(3, "generalized_alpha", 0.09, 0.15);
 }
