@@ -137,6 +137,7 @@ void StudySession::begin() {
                     "unfurl is writing; use another directory");
   output_.require_files({"scene.toml", journal_.c_str()});
   in_the_way_ = arguments_.force && output_.lock().alone();
+  found_ = read_result_file(journal().string()).text;
   if (shard()) make_room();
   if (in_the_way_) return;
   if (!identity_.empty()) output_.require_scene(identity_, arguments_.force);
@@ -219,12 +220,24 @@ void StudySession::write(const std::string& name, const std::string& text) {
   file.write(text);
   file.complete();
   make_room();
+  if (name == journal_ && text == found_) keeps_pictures_ = true;
+  drop_pictures();
   file.commit();
+}
+
+// Those of an earlier command, and its reports, are of other results than are there now. Beside shares of a
+// sweep they are of what was merged.
+void StudySession::drop_pictures() {
+  if (std::exchange(keeps_pictures_, true) || shard()) return;
+  output_.written().remove_all([](const std::string& name) {
+    return !name.starts_with("figures/") && !name.ends_with(".md") && !name.ends_with(".html");
+  });
 }
 
 std::string StudySession::write(const Figure& figure) {
   if (in_the_way_) throw_if_interrupted();
   make_room();
+  drop_pictures();
   const std::string stem = "figures/" + figure.name;
   std::error_code error;
   fs::create_directories(directory() / "figures", error);

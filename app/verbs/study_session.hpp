@@ -72,7 +72,8 @@ class StudySession {
   // its kind.
   void require_asked(Journal& nowhere, const std::function<bool(const Journal::Row&)>& asked) const;
 
-  void write(const std::string& name, const std::string& text);  // DIR/name
+  // DIR/name. With the first table that is another one than was there, figures and reports of that go.
+  void write(const std::string& name, const std::string& text);
   // DIR/figures/NAME.svg, .pdf and .png, its numbers and caption, as --style and --dpi say; returns
   // "figures/NAME.png".
   std::string write(const Figure& figure);
@@ -82,12 +83,15 @@ class StudySession {
   void begin();
   void begin_anew();
   void make_room();
+  void drop_pictures();
   bool shard() const { return journal_.find('_') != std::string::npos; }
 
   OwnDirectory output_;
   std::string journal_, identity_;
   std::filesystem::path grows_;  // is told of when there is room
   bool in_the_way_ = false;      // earlier results are still there
+  std::string found_;            // in the journal
+  bool keeps_pictures_ = false;  // those that are there are of the present results
   Progress progress_;
   FigureWriter writer_;
 };

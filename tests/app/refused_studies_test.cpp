@@ -115,6 +115,32 @@ TEST_CASE("a sweep that draws no figure says so") {
   CHECK(numbers.err.find("no figure") == std::string::npos);
 }
 
+// Twelve words have lines of their own, thirteen have not.
+TEST_CASE("pictures and reports of fewer points do not stay beside more") {
+  const ScratchDirectory dir;
+  const std::string scene = dir.write(
+      "s.toml",
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', "
+      "position = [0.1, 0, -1], mass = 1}]\nrods = [{nodes = ['A', 'B'], mass = 0.1}]\n[gravity]\n"
+      "acceleration = [0, 0, -9.81]\n[solver]\nstep = 0.05\nend_time = 0.2\n");
+  std::string titles = "\"a1\"";
+  for (int i = 2; i <= 12; ++i) titles += ",\"a" + std::to_string(i) + "\"";
+  const auto sweep = [&](const std::string& words) {
+    return run_program({"sweep", scene, "--vary", "structure.nodes.B.mass=1:2:2", "--vary", "title=" + words,
+                        "--measure", "peak_speed", "--dpi", "40", "-o", dir / "out"})
+        .code;
+  };
+  const std::filesystem::path out = dir / "out", picture = out / "figures/sweep_peak_speed.png";
+  REQUIRE(sweep(titles) == 0);
+  REQUIRE(std::filesystem::exists(picture));
+  REQUIRE(sweep(titles) == 0);  // the same once more
+  CHECK(std::filesystem::exists(picture));
+  REQUIRE(sweep(titles + ",\"b\"") == 0);
+  CHECK(!std::filesystem::exists(out / "figures"));
+  CHECK(file_text(out / "sweep.md").find("26 points") != std::string::npos);
+  CHECK(run_program({"verify", out.string()}).code == 0);
+}
+
 TEST_CASE("results that are not asked for again are not written over") {
   const ScratchDirectory dir;
   struct Case {
