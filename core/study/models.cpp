@@ -335,11 +335,14 @@ std::vector<ModelChoice> model_choices(const SceneSource& source) {
 
 namespace {
 
+std::string outcome_with_reason(const MeasuredModel& m) {
+  return m.outcome == "failed" && !m.message.empty() ? "failed: " + m.message : m.outcome;
+}
 std::vector<std::string> row_of_model(const MeasuredModel& m) {
   const auto of_model = [&m](Index count) {
     return m.solved_coordinates > 0 ? std::to_string(count) : std::string("nan");
   };
-  std::vector<std::string> row{m.choice.name, m.outcome, of_model(m.solved_coordinates),
+  std::vector<std::string> row{m.choice.name, outcome_with_reason(m), of_model(m.solved_coordinates),
                                of_model(m.constraints)};
   for (const double x : {m.cpu_median, m.cpu_min, m.cpu_max, m.memory, m.difference, m.deployment_time})
     row.push_back(exact_number(x));
@@ -365,11 +368,12 @@ MeasuredModel model_of(const std::vector<std::string>& row, const ModelChoice& c
   return m;
 }
 
-// Of two choices of one name none is known. One that failed is tried again: its row has no reason.
+// Of two choices of one name none is known. One that failed is tried again.
 std::optional<MeasuredModel> known_model(const Journal& journal, const std::vector<ModelChoice>& choices,
                                          const ModelChoice& choice) {
   const auto* row = journal.find({choice.name});
-  if (!row || (*row)[1] == "failed" || std::ranges::count(choices, choice.name, &ModelChoice::name) > 1)
+  if (!row || (*row)[1].starts_with("failed") ||
+      std::ranges::count(choices, choice.name, &ModelChoice::name) > 1)
     return std::nullopt;
   return model_of(*row, choice);
 }
@@ -481,10 +485,10 @@ Table models_summary(const std::vector<MeasuredModel>& models) {
       continue;
     }
     table.rows.push_back(
-        {m.choice.name + (m.outcome == "failed" ? " (failed)" : ""), std::to_string(m.solved_coordinates),
-         std::to_string(m.constraints), short_number(1e3 * m.cpu_median),
-         short_number(m.cpu_median / models.front().cpu_median), short_number(m.memory / 1e3),
-         known(m.difference), known(m.tip_difference),
+        {m.choice.name + (m.outcome == "failed" ? " (" + outcome_with_reason(m) + ")" : ""),
+         std::to_string(m.solved_coordinates), std::to_string(m.constraints),
+         short_number(1e3 * m.cpu_median), short_number(m.cpu_median / models.front().cpu_median),
+         short_number(m.memory / 1e3), known(m.difference), known(m.tip_difference),
          std::isnan(m.deployment_time) ? "" : short_number(m.deployment_time, 8),
          std::isnan(m.peak_force) ? ""
                                   : short_number(m.peak_force, 6) + (m.peak_unique ? "" : " (not unique)"),

@@ -282,4 +282,20 @@ TEST_CASE("a comparison of models goes on from the rows that are kept") {
   std::filesystem::remove(file);
 }
 
+TEST_CASE("a model that failed says why in its row and in the summary") {
+  MeasuredModel failed;
+  failed.choice.name = "stiff";
+  failed.outcome = "failed";
+  failed.message = "at t = 0.5 s: no step, however short, converges";
+  failed.solved_coordinates = 6;
+  failed.cpu_median = 1;
+  CHECK(models_table({failed}).rows.front()[1] == "failed: " + failed.message);
+  CHECK(models_summary({failed}).rows.front()[0] == "stiff (failed: " + failed.message + ")");
+  MeasuredModel completed = failed;
+  completed.outcome = "completed";
+  completed.message.clear();
+  CHECK(models_table({completed}).rows.front()[1] == "completed");
+  CHECK(models_summary({completed}).rows.front()[0] == "stiff");
+}
+
 }  // namespace models_test
