@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "tests/support/sparse_rows.hpp"
@@ -146,6 +147,41 @@ TEST_CASE("weak directions are found behind the sparse order, too") {
     REQUIRE(sparse.factorise(sparse_rows(G)));
     CHECK(sparse.weakest_pivot(1e-3 * a * a) == 1e-3 * a * a);  // none below
   }
+}
+
+// An analysis is shared by the solvers of a thread: one that was made by itself, in a thread of its own, has
+// the same bits, whatever matrices of the same pattern, other orders and other e were there before.
+TEST_CASE("a solver that comes after others solves as one made by itself does") {
+  struct Made {
+    const Problem* p;
+    double e;
+    SaddleSolver::Order order;
+  };
+  const auto solution = [](const Made& made) {
+    const SparseRows G = sparse_rows(made.p->G);
+    SaddleSolver solver(sparse_rows(made.p->M), G, 1, made.e, made.order);
+    VectorXd x(made.p->f.size()), y(made.p->g.size());
+    if (solver.factorise(G)) solver.solve(made.p->f, made.p->g, x, y);
+    return x;
+  };
+  const Problem one = random_problem(24, 10, 3, 1);
+  Problem heavy = one, turned = one;
+  heavy.M *= 3;
+  turned.G.row(0) *= -0.01;
+  turned.G.row(1).reverseInPlace();
+  turned.g = turned.G * VectorXd::Ones(24);
+  std::vector<Made> all;
+  for (const Problem* p : std::vector<const Problem*>{&one, &heavy, &turned})
+    for (const double e : {1e-13, 1e-7})
+      for (const auto order : {SaddleSolver::Order::safe, SaddleSolver::Order::sparse_first})
+        all.push_back({p, e, order});
+  for (int round = 0; round < 2; ++round)
+    for (const Made& made : all) {
+      const VectorXd here = solution(made);
+      VectorXd alone;
+      std::thread([&] { alone = solution(made); }).join();
+      CHECK((here.array() == alone.array()).all());
+    }
 }
 
 TEST_CASE("multipliers of repeated rows come with least norm") {
