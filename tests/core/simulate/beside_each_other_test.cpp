@@ -119,4 +119,48 @@ TEST_CASE("stops and frictions and cables and motors act beside each other as al
   check({units.rbegin(), units.rend()});
 }
 
+// Blocks on guides: some lie at their stops, loads -a + b t press them on and pull them off at a / b; others
+// are held by friction until b t is more than that. From then on x = b (t - t_0)^3 / 6 m, less what rubs.
+TEST_CASE("of many that rest on stops and frictions each leaves when its own load says") {
+  struct Block {
+    const char* name;
+    double mass, holding, kinetic, rise;  // holding: of a stop as well
+    bool stop;
+    double leaves() const { return holding / rise; }
+  };
+  const std::vector<Block> blocks{{"a", 1.3, 7, 0, 13, true}, {"b", 0.7, 5, 3, 8, false},
+                                  {"c", 2.1, 9, 0, 11, true}, {"d", 0.9, 4, 1, 19, false},
+                                  {"e", 1.7, 2, 0, 6, true},  {"f", 1.1, 6, 2, 7, false}};
+  std::string text = "structure.kind = 'custom'\n";
+  for (const Block& b : blocks) {
+    const std::string name = b.name;
+    text += node(name, {0.4, 0.1, 0}, "mass = " + number(b.mass)) + guide(name, "[1, 0, 0]");
+    text += b.stop ? "[[constraints]]\nkind = 'coordinate_stop'\nname = '" + name + "'\nnodes = ['" + name +
+                         "']\ndirection = [1, 0, 0]\nmin = 0.4\n"
+                   : "[[forces]]\nkind = 'friction'\nname = '" + name + "'\nnodes = ['" + name +
+                         "']\ndirection = [1, 0, 0]\nkinetic = " + number(b.kinetic) +
+                         "\nstatic = " + number(b.holding) + "\n";
+    const double from = b.stop ? -b.holding : 0;
+    text += "[[forces]]\nkind = 'load_over_time'\nnodes = ['" + name +
+            "']\nforce = [1, 0, 0]\ntimes = [0, 2]\nvalues = [" + number(from) + ", " +
+            number(from + 2 * b.rise) + "]\n";
+  }
+  const Simulation run = testing::run_scene(text + "[solver]\nstages = 3\nstep = 0.03\nend_time = 1.1\n");
+  REQUIRE(run.status == RunStatus::completed);
+  const VectorXd q = testing::end_positions(run);
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const Block& b = blocks[k];
+    INFO(b.name);
+    const auto leaves = [&](const Event& e) {
+      return e.element == b.name && e.kind == (b.stop ? "free" : "slip");
+    };
+    REQUIRE(std::ranges::count_if(run.events, leaves) == 1);
+    CHECK(std::ranges::find_if(run.events, leaves)->t == Approx(b.leaves()).epsilon(0).margin(1e-9));
+    // Cubes of time, which three stages have exactly, and squares of what the force jumps by.
+    const double t = 1.1 - b.leaves(), jump = b.stop ? 0 : b.holding - b.kinetic;
+    CHECK(q[3 * static_cast<Index>(k)] ==
+          Approx(0.4 + (b.rise * t * t * t / 6 + jump * t * t / 2) / b.mass).epsilon(0).margin(1e-8));
+  }
+}
+
 }  // namespace beside_each_other_test
