@@ -25,6 +25,8 @@ constexpr double least_cosine = 0.5;
 // An error d of a pose next to a singular one, where the least singular value is sigma, is one of d / sigma
 // in the tangent, across the path: its length, and so s, has none of it.
 constexpr double fine = 4e-15, rough = 3e-13, rough_tangent = 3e-10, flat = 30;
+// Of many rods poses have more, however short a piece is: where no coefficient stands out it is nothing else.
+constexpr double roughest = 3e-11, even = 3;
 // Pieces shorter than this share of the first one: something ends the path.
 constexpr double shortest_piece = 1e-6;
 constexpr int tail = 3, plateau = 5, most_halvings = 30;
@@ -49,9 +51,8 @@ struct Tail {
     before = std::max(before, scale * c.middleCols(points - tail - plateau, plateau).cwiseAbs().maxCoeff());
   }
   // At round-off, or at noise up to that.
-  bool ends(double fine_enough, double noise) const {
-    return last <= fine_enough || (last <= noise && before <= flat * last);
-  }
+  bool ends(double fine_enough, double noise) const { return last <= fine_enough || is_noise(noise, flat); }
+  bool is_noise(double most, double falls) const { return last <= most && before <= falls * last; }
 };
 struct Fit {
   Tail poses, tangents;
@@ -132,9 +133,11 @@ class Path::Tracer {
     for (int halvings = 0; halvings < most_halvings && length > least_; ++halvings, length *= 0.47) {
       if (!solve_points(z, tangent, length)) continue;
       const Fit left = fit(piece);
-      if (!left.poses.ends(fine * grain_, rough * grain_) ||
-          !left.tangents.ends(fine * grain_, rough_tangent * grain_))
-        continue;
+      const bool ends = left.poses.ends(fine * grain_, rough * grain_) &&
+                        left.tangents.ends(fine * grain_, rough_tangent * grain_);
+      const bool noisy = left.poses.is_noise(roughest * grain_, even) &&
+                         left.tangents.ends(fine * grain_, roughest * grain_);
+      if (!ends && !noisy) continue;
       if (left.tangents.last > fine * grain_)
         piece.noise = left.tangents.last / ((piece.b - piece.a) * piece.tangent.cwiseAbs().maxCoeff());
       z = Z_.col(degree);
