@@ -37,6 +37,8 @@ class MotionSamples {
 
   // What is known of the motion around a state of a run.
   std::map<std::pair<const Simulation*, std::size_t>, std::shared_ptr<const void>> around;
+  // Steps of a run into which all are to look.
+  std::map<const Simulation*, std::optional<std::vector<std::size_t>>> long_steps;
 
  private:
   std::map<Key, Sample> kept_;

@@ -250,25 +250,31 @@ std::vector<std::size_t> candidates(const Trajectory& run, const std::vector<dou
   return out;
 }
 
-// Where steps are too long for their ends to tell of what is between, the first states of those that hold the
-// largest values: at a quarter, the middle and three quarters, of which closer() tries whether they are true.
-std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& values) {
-  // Of more of them, and of single ones among many, the states themselves tell.
+// Steps too long for their ends to tell of what is between; of many, or single ones among many, states tell.
+std::vector<std::size_t> long_steps(const Trajectory& t) {
   constexpr std::size_t most_long = 128, few = 8;
-  const Trajectory& t = run.trajectory;
   std::vector<std::size_t> steps;
   for (std::size_t k = 0; k + 1 < t.size() && steps.size() <= most_long; ++k)
     if (joined(t, k, k + 1) && !is_short_step(t.state(k), t.state(k + 1))) steps.push_back(k);
   if (steps.size() > most_long || (t.size() > 2 * most_long && few * steps.size() < t.size())) return {};
+  return steps;
+}
+
+// Those that hold the largest values: at a quarter, the middle and three quarters, of which closer() tries
+// whether they are true.
+std::vector<std::size_t> long_steps(const Simulation& run, const StateValues& values) {
+  MotionSamples* const samples = remembered_samples();
+  std::optional<std::vector<std::size_t>> own, &known = samples ? samples->long_steps[&run] : own;
+  if (!known) known = long_steps(run.trajectory);
   std::vector<std::pair<double, std::size_t>> found;
-  for (const std::size_t k : steps) {
+  for (const std::size_t k : *known) {
     std::optional<MotionSamples::Sample> made;
     double most = -std::numeric_limits<double>::infinity();
     for (const double x : values(inside_step(run, k, made))) most = std::max(most, x);  // not a NaN
     found.push_back({most, k});
   }
   std::ranges::stable_sort(found, std::greater(), [](const auto& f) { return f.first; });
-  steps.clear();
+  std::vector<std::size_t> steps;
   for (std::size_t k = 0; k < std::min(found.size(), 2 * most_candidates); ++k)
     steps.push_back(found[k].second);
   return steps;
