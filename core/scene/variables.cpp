@@ -29,6 +29,37 @@ bool is_expression(const TomlTree& tree) {
   return tree.kind == Kind::text && tree.text.starts_with('=');
 }
 
+std::vector<std::string> words_of(const std::string& expression) {
+  std::vector<std::string> words(1);
+  for (const char c : expression) {
+    if (std::isalnum(static_cast<unsigned char>(c)) || c == '_')
+      words.back() += c;
+    else if (!words.back().empty())
+      words.emplace_back();
+  }
+  return words;
+}
+
+void add_words(const TomlTree& tree, std::set<std::string>& words) {
+  for (std::string& word : words_of(tree.text)) words.insert(std::move(word));
+  for (const TomlTree& item : tree.items) add_words(item, words);
+  for (const auto& [name, value] : tree.entries) add_words(value, words);
+}
+
+// Words of braces in names of files, and of how often an entry stands that names one; whether one is named.
+bool add_words_of_names(const TomlTree& tree, std::set<std::string>& words) {
+  bool named = false;
+  for (const TomlTree& item : tree.items) named |= add_words_of_names(item, words);
+  for (const auto& [key, value] : tree.entries) {
+    const bool name =
+        value.kind == Kind::text && (key == "nodes_file" || key == "rods_file" || key == "table");
+    if (name && value.text.find('{') != std::string::npos) add_words(value, words);
+    named |= add_words_of_names(value, words) || name;
+  }
+  if (const TomlTree* ranges = tree.find("repeat"); ranges && named) add_words(*ranges, words);
+  return named;
+}
+
 // Works out one tree: its expressions, its braces, its repeated entries.
 class Expansion {
  public:
@@ -143,17 +174,6 @@ class Expansion {
       for (std::string& word : words_of(below->second->text)) open.push_back(std::move(word));
     }
     return in_quotes(name) + " stands below: a variable may use those above it; move one of them";
-  }
-
-  static std::vector<std::string> words_of(const std::string& expression) {
-    std::vector<std::string> words(1);
-    for (const char c : expression) {
-      if (std::isalnum(static_cast<unsigned char>(c)) || c == '_')
-        words.back() += c;
-      else if (!words.back().empty())
-        words.emplace_back();
-    }
-    return words;
   }
 
   // 2.1 / 0.7 is 3 but for rounding, and means 3 where things are counted and named. What is counted from one
@@ -339,6 +359,27 @@ bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& 
   expansion.expand(root, "");
   if (worked_out) worked_out->keys = expansion.keys(), worked_out->idle = expansion.idle();
   return problems.size() == before;
+}
+
+std::set<std::string> variables_of_files(TomlTree root, const std::vector<std::string>& overrides) {
+  std::vector<SceneProblem> told_elsewhere;
+  std::set<std::string> words, found;
+  std::vector<std::string> variables;
+  for (const auto& text : overrides)
+    if (text.starts_with(of_variables))
+      variables.push_back(text);
+    else if (text.find("repeat") != std::string::npos)  // its braces count, too: whatever it names
+      for (std::string& word : words_of(text)) words.insert(std::move(word));
+  apply_overrides(root, variables, told_elsewhere);
+  add_words_of_names(root, words);
+  const TomlTree* table = root.find("variables");
+  if (!table) return found;
+  for (auto entry = table->entries.rbegin(); entry != table->entries.rend(); ++entry)  // of those above it
+    if (words.contains(entry->key)) {
+      found.insert(entry->key);
+      add_words(entry->value, words);
+    }
+  return found;
 }
 
 }  // namespace unfurl

@@ -38,4 +38,7 @@ struct WorkedOut {
 bool apply_overrides_and_expand(TomlTree& root, const std::vector<std::string>& overrides,
                                 std::vector<SceneProblem>& problems, WorkedOut* worked_out = nullptr);
 
+// Variables on which it depends what files a scene names, by themselves or through others.
+std::set<std::string> variables_of_files(TomlTree root, const std::vector<std::string>& overrides);
+
 }  // namespace unfurl

@@ -17,6 +17,8 @@
 
 #include "core/export/checksum.hpp"
 #include "core/scene/text_file.hpp"
+#include "core/scene/toml_tree.hpp"
+#include "core/scene/variables.hpp"
 #include "core/scene/write.hpp"
 #include "core/study/sweep.hpp"
 #include "core/text/nearest_name.hpp"
@@ -301,10 +303,12 @@ std::pair<std::string, std::map<std::string, std::string>> files_apart(const std
 }  // namespace
 
 std::string files_of_points(const SweepPlan& plan) {
-  if (!plan.source.files) return "";
+  if (!plan.source.files || !plan.source.text) return "";
   const std::set<std::string> own = plan.source.read().files;  // written out with the scene
+  const std::set<std::string> naming =
+      variables_of_files(parse_toml(*plan.source.text, plan.source.path), plan.source.overrides);
   for (const SweepAxis& axis : plan.axes) {
-    const bool in_names = axis.key.starts_with("variables.") && !own.empty();  // "nodes_{k}.csv"
+    const bool in_names = axis.key.starts_with("variables.") && naming.contains(axis.key.substr(10));
     if (!axis.numbers.empty() && !in_names) continue;
     for (const std::string& value : axis.values) try {
         static_cast<void>(plan.source.read({axis.key + "=" + value}));
