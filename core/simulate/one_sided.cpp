@@ -360,15 +360,17 @@ void OneSided::measure_held(const Model& model, const State& state, Probe& probe
 }
 
 // A gap that its force lets go opens with the cube of time, which a step of second order follows with either
-// sign: it is no contact where no more is passed than what pulls away makes in that time.
-bool OneSided::leaves(std::size_t i, const Model& model, const State& state, double passed) const {
+// sign: it is no contact where no more is passed than what pulls away makes in that time, while the gap has
+// about the rate that comes of it. What swings back within the step is slower by then.
+bool OneSided::leaves(std::size_t i, const Model& model, const State& state, double passed,
+                      double rate) const {
   const double since = state.t - let_go_[static_cast<Index>(i)];
   if (!(since > 0)) return false;
   const System system = model.system.at(state);
   PushResponses responses(system, state);
   if (responses.ok()) responses.add(measure(i), sign(i), near(i, state), limit_motion(i, state.t));
   const VectorXd away = responses.accelerations(model.structure, state).value;
-  return away.size() == 1 && passed < away[0] * since * since;
+  return away.size() == 1 && passed < away[0] * since * since && 4 * rate > away[0] * since;
 }
 
 // Of frictions that stick, those that are held and those that rest by them.
@@ -429,7 +431,7 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
     const double gap = stops_.gap(k, state, q, v, rate) - shift_[i];
     probe.margins[i] = gap / touching(k);
     probe.rates[i] = rate / touching(k);
-    if (probe.margins[i] < -1 && leaves(k, model, state, -gap)) probe.margins[i] = -0.5;
+    if (probe.margins[i] < -1 && leaves(k, model, state, -gap, rate)) probe.margins[i] = -0.5;
   }
 }
 

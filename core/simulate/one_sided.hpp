@@ -191,7 +191,7 @@ class OneSided {
   double room(const Drive& motor, const VectorXd& q, const VectorXd& v, const State& state) {
     return rooms(motor, q, v, state)[static_cast<std::size_t>(motor.law.motor.regime)];
   }
-  bool leaves(std::size_t i, const Model& model, const State& state, double passed) const;
+  bool leaves(std::size_t i, const Model& model, const State& state, double passed, double rate) const;
   void measure_sticking(double zero, Probe& probe);
   void measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
                         Probe& probe);
