@@ -50,7 +50,8 @@ bool is_beside(const Trajectory& run, double t, double of_state) {
 
 // What all rods have of a column that is the largest (sign 1) or least (-1) of theirs, with that sign [states
 // x rods]; nothing of other columns.
-MatrixXd of_rods(const Structure& structure, const Diagnostics& d, std::string_view column, double sign) {
+MatrixXd borne_by_rods(const Structure& structure, const Diagnostics& d, std::string_view column,
+                       double sign) {
   if (column == (sign < 0 ? "axial_force_min_N" : "axial_force_max_N")) return sign * d.axial_force;
   if (column == (sign < 0 ? "axial_stress_min_Pa" : "axial_stress_max_Pa"))
     return sign * over_rods(structure, d, axial_stress);
@@ -82,7 +83,7 @@ std::vector<std::size_t> rod_humps(const Trajectory& run, const Diagnostics& d, 
                                    double sign) {
   constexpr std::size_t most = 3;
   constexpr double round_off = 1e-9;
-  const MatrixXd values = of_rods(run.structure(), d, column, sign);
+  const MatrixXd values = borne_by_rods(run.structure(), d, column, sign);
   const Index states = values.rows();
   double best = -std::numeric_limits<double>::infinity();
   for (Index r = 0; r < values.cols(); ++r)
