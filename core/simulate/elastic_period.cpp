@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/elastic_period.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
+#include "core/forces/bending.hpp"
 #include "core/forces/spring.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/math/saddle_solver.hpp"
@@ -15,8 +17,9 @@
 namespace unfurl {
 namespace {
 
-constexpr int power_steps = 60;
-constexpr double settled_share = 1e-3;   // of w^2, from one step to the next
+constexpr int most_directions = 60;
+constexpr double settled_share = 1e-3;   // of w^2, what is left of the fastest one's equation
+constexpr double known_share = 0.05;     // the same of the others that count
 constexpr double followed_share = 0.25;  // of a period: steps up to that follow it
 
 bool has_waves(const Structure& structure) {
@@ -25,10 +28,11 @@ bool has_waves(const Structure& structure) {
                      [](const Force& f) { return f.kind == "bending"; });
 }
 
-// Cables are looked at when they begin to pull.
+// Those that are slack at a pose have no stiffness there.
 bool has_springs(const Structure& structure) {
-  return std::ranges::any_of(structure.forces,
-                             [](const Force& f) { return f.stiffness > 0 && !f.one_sided; });
+  return std::ranges::any_of(structure.forces, [](const Force& f) {
+    return f.kind != "bending" && (f.stiffness > 0 || f.axial_stiffness > 0);
+  });
 }
 
 // Of a period, the longest step that leaves a swing's phase within 0.05 rad in each, and no less than those
@@ -56,44 +60,129 @@ std::string spring_step_warning(double period, const SolverOptions& options) {
   return text.str();
 }
 
+struct FastestPeriods {
+  double of_rods = std::numeric_limits<double>::infinity(), on_springs = of_rods;  // [s]
+};
+
+// Small motions about a pose, M x'' + C x' + K x + G^T y = 0, G x = 0. A mode of w^2 = k that is damped by c
+// swings where k > c^2 / 4: the largest eigenvalues of K - C M^-1 C / 4 are those of modes that do, whatever
+// is stiffer and does not. Without damping this is K, as it is where rods that give are all there is: which
+// of their waves a step does not follow matters though they die out.
+class SmallMotions {
+ public:
+  SmallMotions(const Model& model, const State& state)
+      : structure_(model.structure),
+        system_(model.system.at(state)),
+        t_(state.t),
+        q_(system_.coordinates()),
+        G_(system_.jacobian_pattern()) {
+    system_.expand(state.z, q_);
+    std::vector<double> scratch;
+    system_.jacobian(q_, G_, scratch);
+    const VectorXd still = VectorXd::Zero(q_.size());
+    system_.force_derivatives(t_, q_, still, by_z_, by_w_);
+    if (!has_waves(structure_)) return;
+    const VectorXd no_tension = VectorXd::Zero(std::ssize(system_.giving_rods()));
+    system_.force_derivatives(t_, q_, still, no_tension, without_rods_, by_w_);
+    const auto bending = bending_block(structure_, system_.node_mass());
+    ForceDerivative by_v;
+    if (bending) bending->derivatives(t_, q_.data(), still.data(), bending_, by_v);
+    if (!has_springs(structure_)) by_w_.setZero();
+  }
+
+  FastestPeriods fastest() const {
+    SaddleSolver saddle(system_.mass(), G_);
+    if (!saddle.factorise(G_)) return {};
+    const Index most = std::min<Index>(most_directions, system_.solved_coordinates());
+    MatrixXd V(system_.solved_coordinates(), most), H = MatrixXd::Zero(most, most);
+    VectorXd x(V.rows()), y(G_.rows());
+    const VectorXd none = VectorXd::Zero(G_.rows());
+    const auto answer = [&](const VectorXd& force) {
+      saddle.solve(force, none, x, y);
+      return x;
+    };
+    for (Index i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
+    VectorXd next = answer(system_.mass() * VectorXd(x));
+    // Lanczos in the mass metric, each direction kept clear of all before it.
+    for (Index m = 0; m < most; ++m) {
+      const double norm = std::sqrt(next.dot(system_.mass() * next));
+      if (!(norm > 0)) return {};
+      V.col(m) = next / norm;
+      next = -answer(by_z_ * V.col(m));
+      if (by_w_.norm() > 0) next -= 0.25 * answer(by_w_ * answer(by_w_ * V.col(m)));
+      if (!next.allFinite()) return {};
+      const double size = std::sqrt(next.dot(system_.mass() * next));
+      for (int again = 0; again < 2; ++again) {
+        const VectorXd parts = V.leftCols(m + 1).transpose() * (system_.mass() * next);
+        H.col(m).head(m + 1) += parts;
+        next -= V.leftCols(m + 1) * parts;
+      }
+      const double left = std::sqrt(next.dot(system_.mass() * next));
+      const bool whole = !(left > settled_share * settled_share * size) || m + 1 == most;
+      if (!whole && (m < 8 || m % 4 > 0)) continue;
+      // It reads the lower triangle.
+      const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(H.topLeftCorner(m + 1, m + 1).transpose());
+      const auto known = [&](Index i, double share) {
+        return ritz.eigenvalues()[i] > 0 &&
+               (m + 1 == V.rows() ||
+                left * std::abs(ritz.eigenvectors()(m, i)) <= share * ritz.eigenvalues()[i]);
+      };
+      if (!whole && (has_waves(structure_) || !known(m, settled_share))) continue;
+      FastestPeriods found;
+      for (Index i = 0; i <= m; ++i)
+        if (known(i, known_share) || i == m) note(V.leftCols(m + 1) * ritz.eigenvectors().col(i), found);
+      return found;
+    }
+    return {};
+  }
+
+ private:
+  // Of a mode with |x| = 1 in the mass metric.
+  void note(const VectorXd& x, FastestPeriods& found) const {
+    const double square = -x.dot(by_z_ * x), rate = -x.dot(by_w_ * x);
+    if (!(square > 0) || rate > 2 * std::sqrt(square)) return;
+    double& period = of_rods(x) > 0.5 * square ? found.of_rods : found.on_springs;
+    period = std::min(period, 2 * pi / std::sqrt(square));
+  }
+
+  // What of x . K x is of rods that give.
+  double of_rods(const VectorXd& x) const {
+    if (!has_waves(structure_)) return 0;
+    if (!has_springs(structure_)) return std::numeric_limits<double>::infinity();
+    double sum = x.dot(without_rods_ * x) - x.dot(by_z_ * x);
+    VectorXd v(q_.size());
+    system_.expand_rate(x, v);
+    for (const auto& entry : bending_) sum -= v[entry.row()] * entry.value() * v[entry.col()];
+    return sum;
+  }
+
+  const Structure& structure_;
+  System system_;
+  double t_;
+  VectorXd q_;
+  SparseRows G_, by_z_, by_w_, without_rods_;
+  ForceDerivative bending_;
+};
+
+FastestPeriods fastest_periods(const Model& model, const State& state) {
+  if (!has_waves(model.structure) && !has_springs(model.structure)) return {};
+  return SmallMotions(model, state).fastest();
+}
+
 }  // namespace
 
 double fastest_elastic_period(const Model& model, const State& state) {
-  constexpr double endless = std::numeric_limits<double>::infinity();
-  if (!has_waves(model.structure) && !has_springs(model.structure)) return endless;
-  const System system = model.system.at(state);
-  VectorXd q(system.coordinates());
-  system.expand(state.z, q);
-  SparseRows by_z, by_w, G = system.jacobian_pattern();
-  system.force_derivatives(state.t, q, VectorXd::Zero(q.size()), by_z, by_w);
-  std::vector<double> scratch;
-  system.jacobian(q, G, scratch);
-  SaddleSolver saddle(system.mass(), G);
-  if (!saddle.factorise(G)) return endless;
-  VectorXd x(system.solved_coordinates()), a(x.size()), y(G.rows());
-  for (Index i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
-  const VectorXd none = VectorXd::Zero(G.rows());
-  double square = 0;
-  for (int it = 0; it < power_steps; ++it) {
-    saddle.solve(by_z * x, none, a, y);
-    // Rayleigh's quotient in the mass metric: from below.
-    const double before = square;
-    square = std::sqrt(std::max(a.dot(system.mass() * a), 0.0) / x.dot(system.mass() * x));
-    if (!(square > 0) || !a.allFinite()) return endless;
-    x = a / a.lpNorm<Eigen::Infinity>();
-    if (it > 8 && std::abs(square - before) <= settled_share * square) break;
-  }
-  const double rate = -x.dot(by_w * x) / x.dot(system.mass() * x);
-  if (!has_waves(model.structure) && rate > 2 * std::sqrt(square)) return endless;  // it does not swing
-  return 2 * pi / std::sqrt(square);
+  const FastestPeriods periods = fastest_periods(model, state);
+  return std::min(periods.of_rods, periods.on_springs);
 }
 
 std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options) {
   const Method* method = find_method(options.method);
   if (!method || method->claims(options).damps) return {};
-  const double period = fastest_elastic_period(model, start);
-  if (!has_waves(model.structure)) return spring_step_warning(period, options);
-  if (!(options.step > followed_share * period)) return {};
+  const FastestPeriods periods = fastest_periods(model, start);
+  const double period = periods.of_rods;
+  const std::string springs = spring_step_warning(periods.on_springs, options);
+  if (!(options.step > followed_share * period)) return springs;
   std::ostringstream text;
   text.precision(3);
   text << "the step of " << options.step << " s does not resolve the fastest elastic period, " << period
@@ -107,6 +196,7 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
                : "")
        << "; to let them die out, structure.damping_ratio or solver.method = \"generalized_alpha\"; to leave "
           "them out, structure.rod_model = \"quasi-static\"";
+  if (!springs.empty()) text << "; " << springs;
   return text.str();
 }
 

@@ -12,13 +12,13 @@ namespace unfurl {
 class OneSided;
 
 // The shortest period of small motions about a state that rigid rows allow [s]; infinite where no rod gives
-// or bends and no spring swings for its stiffness. By the power method on M x'' + G^T y = (dF/dz) x, G x'' =
-// 0, to about a percent.
+// or bends and nothing swings on a spring, or a taut cable, for its stiffness and damping. To about a
+// percent.
 double fastest_elastic_period(const Model& model, const State& state);
 
 // What is said where the steps of a run are longer than a quarter of that period, with both numbers and what
-// there is to choose; empty: nothing. Of a method that damps what it does not resolve, nothing. Of springs
-// alone, more stages of dvm follow in a longer step what fewer would not.
+// there is to choose; empty: nothing. Of a method that damps what it does not resolve, nothing. Of what
+// swings on springs, more stages of dvm follow in a longer step what fewer would not.
 std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options);
 
 // The same of cable i, which begins to pull: of how what it holds back swings on it. More stages of dvm

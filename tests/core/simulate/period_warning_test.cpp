@@ -215,12 +215,129 @@ damping = )" + exact_number(k2 * damping) +
     CHECK(number_behind(text, "swing on springs, ") == Approx(period).epsilon(6e-3));
     CHECK(number_behind(text, "solver.step = ") == Approx(followed).epsilon(6e-3));
   }
-  // Damping in proportion, c = b k, of that mode: it does not swing from b w = 2 on.
+  // Damping in proportion, c = b k, of that mode: it does not swing from b w = 2 on, and the other one is
+  // left.
   options.step = 10 * period;
-  CHECK_FALSE(said(*of(1.95 / std::sqrt(square)), options).empty());
-  CHECK(said(*of(2.05 / std::sqrt(square)), options).empty());
+  const auto fastest = [&](double damping) {
+    return number_behind(said(*of(damping / std::sqrt(square)), options), "swing on springs, ");
+  };
+  const double slow = std::sqrt(k1 * k2 / (a * square));  // its w: the product of both squares is that
+  CHECK(fastest(1.95) == Approx(period).epsilon(6e-3));
+  CHECK(fastest(2.05) == Approx(2 * pi / slow).epsilon(6e-3));
+  CHECK(said(*of(2.05 / slow), options).empty());
   options.method = "generalized_alpha";  // which lets them die out
   CHECK(said(*springs, options).empty());
+}
+
+// Masses of 1 kg on lines of their own, each on a spring of this stiffness and damping. Undamped ones swing
+// with w^2 = k, those with c > 2 sqrt(k) do not.
+TEST_CASE("a swing is told whatever else is stiffer and does not swing for its damping") {
+  using Springs = std::vector<std::pair<double, double>>;
+  const auto told_period = [](const Springs& springs, const std::string& more = "") {
+    std::string nodes, forces, lines;
+    for (std::size_t i = 0; i < springs.size(); ++i) {
+      const std::string n = std::to_string(i), at = ", " + n + ", 0]";
+      nodes += "{name = 'O" + n + "', position = [0" + at + ", fixed = true}, {name = 'A" + n +
+               "', position = [1.1" + at + ", mass = 1}, ";
+      lines += "'A" + n + "', ";
+      forces += "[[forces]]\nkind = 'spring'\nnodes = ['O" + n + "', 'A" + n +
+                "']\nstiffness = " + exact_number(springs[i].first) +
+                "\ndamping = " + exact_number(springs[i].second) + "\n";
+    }
+    const auto model = model_of("[structure]\nkind = 'custom'\nrods = []\nnodes = [" + nodes +
+                                "]\nconstraints = [{kind = 'line', nodes = [" + lines +
+                                "], direction = [1, 0, 0]}]\n" + forces + more);
+    SolverOptions options;
+    options.step = 10;
+    return number_behind(
+        elastic_step_warning(*model, initial_state(model->structure, model->system).state, options),
+        "swing on springs, ");
+  };
+  const auto period = [](double k) { return Approx(2 * pi / std::sqrt(k)).epsilon(6e-3); };
+  CHECK(told_period({{1e6, 0}, {4e6, 1e4}}) == period(1e6));
+  CHECK(told_period({{1e6, 0}, {4e6, 3e3}}) == period(4e6));
+  CHECK(told_period({{1e6, 0}, {1e6, 1e4}, {100, 0}}) == period(1e6));  // alike but for damping
+  CHECK(told_period({{1e6, 5e4}, {4e6, 1e4}, {100, 0}}) == period(100));
+  CHECK(std::isnan(told_period({{1e6, 5e4}, {4e6, 1e4}})));
+  // More that do not swing, no two alike, than directions are looked into.
+  Springs many{{1e6, 100}};
+  for (int i = 0; i < 80; ++i) many.emplace_back(4e6 * (1 + 0.05 * i), 2.2e4);
+  CHECK(told_period(many) == period(1e6));
+}
+
+// A mass of 1.2 kg that a load of 500 N keeps off a wall: w^2 = k / m, of what pulls only as of any spring.
+// Half as stiff by k (e + w) / (2 w) in the middle of what is smoothed, e = 0.
+TEST_CASE("what pulls only and is taut from the start is told as springs are") {
+  const auto told_period = [](const std::string& force, double x) {
+    const auto model = model_of(
+        "[structure]\nkind = 'custom'\nrods = []\n"
+        "nodes = [{name = 'O', position = [0, 0, 0], fixed = true},\n"
+        "  {name = 'A', position = [" +
+        exact_number(x) +
+        ", 0, 0], mass = 1.2}]\n"
+        "constraints = [{kind = 'line', nodes = ['A'], direction = [1, 0, 0]}]\n"
+        "[[loads]]\nnodes = ['A']\nforce = [500, 0, 0]\n"
+        "[[forces]]\nnodes = ['O', 'A']\n" +
+        force);
+    SolverOptions options;
+    options.step = 10;
+    return number_behind(
+        elastic_step_warning(*model, initial_state(model->structure, model->system).state, options),
+        "swing on springs, ");
+  };
+  const std::string cable = "kind = 'cable'\naxial_stiffness = 8e4\nlength = 2\n",
+                    spring = "kind = 'spring'\nstiffness = 4e4\nfree_length = 2\n";
+  const auto period = Approx(2 * pi * std::sqrt(1.2 / 4e4)).epsilon(6e-3);
+  for (const std::string& force :
+       {spring, spring + "tension_only = true\n", cable, cable + "smoothing = 1e-3\n"}) {
+    INFO(force);
+    CHECK(told_period(force, 2.0125) == period);
+  }
+  CHECK(std::isnan(told_period(cable, 1.9)));
+  CHECK(std::isnan(told_period(spring + "tension_only = true\n", 1.9)));
+  CHECK(told_period(cable + "smoothing = 1e-3\n", 2) == Approx(2 * pi * std::sqrt(1.2 / 2e4)).epsilon(6e-3));
+}
+
+// Elsewhere in the structure a mass of 1 kg on an elastic rod of E A / l = 1000 N/m, and one on a spring.
+TEST_CASE("beside elastic rods a swing on a spring is told as such, if it is one") {
+  const auto said = [](double stiffness, double damping, double step) {
+    const auto model = model_of(R"(
+[structure]
+kind = "custom"
+rods = [{nodes = ["E", "F"], mass = 0, area = 1e-6, youngs_modulus = 1e9, elastic = true}]
+nodes = [{name = "E", position = [0, 8, 0], fixed = true}, {name = "F", position = [1, 8, 0], mass = 1},
+         {name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1.1, 0, 0], mass = 1}]
+constraints = [{kind = "line", nodes = ["A", "F"], direction = [1, 0, 0]}]
+[[forces]]
+kind = "spring"
+nodes = ["O", "A"]
+stiffness = )" + exact_number(stiffness) +
+                                "\ndamping = " + exact_number(damping) + "\n");
+    SolverOptions options;
+    options.stages = 3;
+    options.step = step;
+    return elastic_step_warning(*model, initial_state(model->structure, model->system).state, options);
+  };
+  const double rod = 2 * pi / std::sqrt(1000);
+  const auto told_rod = [](const std::string& text) { return number_behind(text, "elastic period, "); };
+  const auto told_spring = [](const std::string& text) { return number_behind(text, "swing on springs, "); };
+  for (const double damping : {0.0, 1e4}) {
+    const bool swings = damping == 0;
+    INFO(damping);
+    const std::string fine = said(4e6, damping, 0.2 * rod), coarse = said(4e6, damping, 0.3 * rod);
+    CHECK(fine.empty() != swings);
+    CHECK(std::isnan(told_rod(fine)));
+    CHECK(told_rod(coarse) == Approx(rod).epsilon(6e-3));
+    for (const std::string& text : {fine, coarse}) {
+      if (swings)
+        CHECK(told_spring(text) == Approx(2 * pi / 2000).epsilon(6e-3));
+      else
+        CHECK(std::isnan(told_spring(text)));
+    }
+  }
+  // A spring that is slower than the rod.
+  CHECK(std::isnan(told_spring(said(100, 0, 0.3 * rod))));
+  CHECK(told_spring(said(100, 0, rod)) == Approx(2 * pi / 10).epsilon(6e-3));
 }
 
 }  // namespace period_warning_test
