@@ -58,14 +58,14 @@ double length_at_end(const Simulation& run) {
 
 }  // namespace
 
-// Coordinates a thousand times as long as the only rod are known to fewer digits than a path is traced with.
+// Coordinates a million times as long as the only rod are known to fewer digits than a path is traced with.
 TEST_CASE("a drive that leads beyond where the path can be followed is refused") {
   const Scene scene = read_scene_text(
       "[structure]\nkind = 'custom'\nnodes = [{name = 'P', position = [0, 0, 0], mass = 0.05}, {name = 'Q', "
       "position = [0.02, 0, 0], mass = 0.05}]\nrods = [{nodes = ['P', 'Q'], mass = 0.01}]\n"
       "[[constraints]]\nkind = 'line'\nnodes = ['P', 'Q']\ndirection = [1, 0, 0]\n"
       "[[constraints]]\nkind = 'coordinate'\nnodes = ['P']\ndirection = [1, 0, 0]\nmotion = 'smooth'\nto = "
-      "40\n"
+      "40000\n"
       "duration = 20\n[solver]\nstep = 0.1\nend_time = 25\n",
       "cart.toml", {});
   CHECK_THROWS_AS(simulate_on_path(build_model(scene), scene.solver), PathRefused);
