@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/elastic_period.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 #include "core/forces/bending.hpp"
 #include "core/forces/spring.hpp"
 #include "core/integrators/integrator.hpp"
+#include "core/math/factors.hpp"
 #include "core/math/saddle_solver.hpp"
 #include "core/simulate/one_sided.hpp"
 #include "core/simulate/push_responses.hpp"
@@ -120,17 +120,16 @@ class SmallMotions {
       const double left = std::sqrt(next.dot(system_.mass() * next));
       const bool whole = !(left > settled_share * settled_share * size) || m + 1 == most;
       if (!whole && (m < 8 || m % 4 > 0)) continue;
-      // It reads the lower triangle.
-      const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(H.topLeftCorner(m + 1, m + 1).transpose());
+      const SymmetricEigen ritz =
+          symmetric_eigen(H.topLeftCorner(m + 1, m + 1).transpose());  // the lower triangle
       const auto known = [&](Index i, double share) {
-        return ritz.eigenvalues()[i] > 0 &&
-               (m + 1 == V.rows() ||
-                left * std::abs(ritz.eigenvectors()(m, i)) <= share * ritz.eigenvalues()[i]);
+        return ritz.values[i] > 0 &&
+               (m + 1 == V.rows() || left * std::abs(ritz.vectors(m, i)) <= share * ritz.values[i]);
       };
       if (!whole && (has_waves(structure_) || !known(m, settled_share))) continue;
       FastestPeriods found;
       for (Index i = 0; i <= m; ++i)
-        if (known(i, known_share) || i == m) note(V.leftCols(m + 1) * ritz.eigenvectors().col(i), found);
+        if (known(i, known_share) || i == m) note(V.leftCols(m + 1) * ritz.vectors.col(i), found);
       return found;
     }
     return {};
