@@ -63,6 +63,31 @@ void System::Data::clear_rounding(const std::vector<double>& node_entries, Spars
   for (const int r : implied) std::fill(values + start[r], values + start[r + 1], 0.0);
 }
 
+// Does the row know no positions (`there`, `here`: node entries at two poses), and does some coefficient not
+// cancel? It is an equation then, however small that is.
+bool System::Data::has_own_coefficient(Index row, double negligible, const std::vector<double>& there,
+                                       const std::vector<double>& here) const {
+  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+  const auto r = static_cast<std::size_t>(row);
+  for (auto e = static_cast<std::size_t>(row > 0 ? row_ends[r - 1] : 0),
+            end = static_cast<std::size_t>(row_ends[r]);
+       e < end; ++e)
+    if (std::abs(here[e] - there[e]) > rounding * std::abs(here[e])) return false;
+  for (auto e = static_cast<std::size_t>(pattern.outerIndexPtr()[row]),
+            end = static_cast<std::size_t>(pattern.outerIndexPtr()[row + 1]);
+       e < end; ++e) {
+    double sum = 0, whole = 0;
+    for (auto k = static_cast<std::size_t>(sum_start[e]); k < static_cast<std::size_t>(sum_start[e + 1]);
+         ++k) {
+      const double term = sum_coefficient[k] * here[static_cast<std::size_t>(sum_source[k])];
+      sum += term;
+      whole += std::abs(term);
+    }
+    if (std::abs(sum) > negligible * whole) return true;
+  }
+  return false;
+}
+
 // A row that follows from the eliminated ones has no gradient in any pose that these allow, where one that is
 // next to a singular pose has one elsewhere: two poses, far from the start and from each other, tell.
 void System::find_implied_rows() {
@@ -80,7 +105,9 @@ void System::find_implied_rows() {
   std::vector<Eigen::Triplet<double>> entries;
   const VectorXd start = reduce(d.start);
   VectorXd q(d.coordinates), z(n), whole(d.rows);
+  std::vector<double> before;
   for (int pose = 0; pose < 2; ++pose) {
+    before.swap(scratch);
     for (Index i = 0; i < n; ++i)
       z[i] = start[i] + d.lengths.maxCoeff() * std::cos(1.0 + pose + (2.3 + pose) * static_cast<double>(i));
     expand(z, q);
@@ -106,6 +133,7 @@ void System::find_implied_rows() {
     for (end = first + 1; end < d.rows && same(end, first);) ++end;
     if (source[static_cast<std::size_t>(first)] >= 0) add_dependent(both, first, end, digits, d.implied);
   }
+  std::erase_if(d.implied, [&](int row) { return d.has_own_coefficient(row, digits, before, scratch); });
   std::sort(d.implied.begin(), d.implied.end());
 }
 

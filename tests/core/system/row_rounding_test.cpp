@@ -150,4 +150,29 @@ TEST_CASE("a linkage far from the origin moves as near it") {
               {std::string("solver.method=") + method}) <= 1e-6);
 }
 
+// A is held across the plane that it moves in, and c times a coordinate of B is added to that: it holds B,
+// whatever c is, as it does where nothing is eliminated. B is off by what errors of rows leave over c: 1e-15
+// m of a row.
+TEST_CASE("a small coefficient beside an eliminated one holds what it is of") {
+  for (const double c : {1.0, 1e-4, 1e-6, 1e-8, 1e-10})
+    for (const char* eliminated : {"true", "false"}) {
+      INFO(c << ", eliminate_linear = " << eliminated);
+      const Simulation run = testing::run_scene(
+          "[structure]\nkind = 'custom'\nrods = [{nodes = ['O', 'D'], mass = 1}]\n"
+          "nodes = [{name = 'A', position = [0, 0, 0], mass = 1}, {name = 'B', position = [1, 1, 0], mass = "
+          "1},\n"
+          "  {name = 'O', position = [3, 1, 0], fixed = true}, {name = 'D', position = [3, 2, 0]}]\n"
+          "[[constraints]]\nkind = 'plane'\nnodes = ['A', 'D']\nnormal = [0, 0, 1]\n"
+          "[[constraints]]\nkind = 'combination'\n"
+          "terms = ['1 coordinate A along 0 0 1', '" +
+              number(c) +
+              " coordinate B along 1 0 0']\n"
+              "[[loads]]\nnodes = ['B']\nforce = [1, 0, 0]\n[solver]\nstep = 0.1\nend_time = 1\n",
+          {std::string("solver.eliminate_linear=") + eliminated});
+      INFO(run.message);
+      REQUIRE(run.status == RunStatus::completed);
+      CHECK(testing::end_positions(run)[3] == Approx(1).epsilon(0).margin(1e-15 / c + 1e-12));
+    }
+}
+
 }  // namespace row_rounding_test
