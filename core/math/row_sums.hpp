@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -31,6 +32,14 @@ class RowSums {
     } else {
       further_.push_back({{source, coefficient}, row});
     }
+  }
+
+  // The same sums of magnitudes of coefficients.
+  RowSums magnitudes() const {
+    RowSums out = *this;
+    for (Term& term : out.first_) term.coefficient = std::abs(term.coefficient);
+    for (Further& f : out.further_) f.term.coefficient = std::abs(f.term.coefficient);
+    return out;
   }
 
   void of(const double* x, double* out) const {

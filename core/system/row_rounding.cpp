@@ -47,7 +47,7 @@ void System::Data::clear_rounding(const std::vector<double>& node_entries, Spars
   // A few products and sums; coefficients of what was eliminated are of order one.
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
   const double* entry = node_entries.data();
-  const int* const start = G.outerIndexPtr();
+  const int* const row_start = G.outerIndexPtr();
   double* const values = G.valuePtr();
   for (std::size_t r = 0, rows_of_G = row_ends.size(); r < rows_of_G; ++r) {
     const double* const row_end = node_entries.data() + row_ends[r];
@@ -55,37 +55,35 @@ void System::Data::clear_rounding(const std::vector<double>& node_entries, Spars
 #pragma GCC unroll 2
     for (; entry != row_end; ++entry) whole = std::max(whole, std::abs(*entry));
     const double bound = rounding * whole;
-    double* const end = values + start[r + 1];
-    const double* x = values + start[r];
+    double* const end = values + row_start[r + 1];
+    const double* x = values + row_start[r];
     while (x != end && !(std::abs(*x) > bound)) ++x;
-    if (x == end) std::fill(values + start[r], end, 0.0);
+    if (x == end) std::fill(values + row_start[r], end, 0.0);
   }
-  for (const int r : implied) std::fill(values + start[r], values + start[r + 1], 0.0);
+  for (const int r : implied) std::fill(values + row_start[r], values + row_start[r + 1], 0.0);
 }
 
-// Does the row know no positions (`there`, `here`: node entries at two poses), and does some coefficient not
-// cancel? It is an equation then, however small that is.
-bool System::Data::has_own_coefficient(Index row, double negligible, const std::vector<double>& there,
-                                       const std::vector<double>& here) const {
+// Of rows those that know no positions (`there`, `here`: node entries at two poses) and have a coefficient
+// that does not cancel are equations, however small that is.
+void System::Data::keep_own_coefficients(std::vector<int>& these, double negligible,
+                                         const std::vector<double>& there,
+                                         const std::vector<double>& here) const {
   constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
-  const auto r = static_cast<std::size_t>(row);
-  for (auto e = static_cast<std::size_t>(row > 0 ? row_ends[r - 1] : 0),
-            end = static_cast<std::size_t>(row_ends[r]);
-       e < end; ++e)
-    if (std::abs(here[e] - there[e]) > rounding * std::abs(here[e])) return false;
-  for (auto e = static_cast<std::size_t>(pattern.outerIndexPtr()[row]),
-            end = static_cast<std::size_t>(pattern.outerIndexPtr()[row + 1]);
-       e < end; ++e) {
-    double sum = 0, whole = 0;
-    for (auto k = static_cast<std::size_t>(sum_start[e]); k < static_cast<std::size_t>(sum_start[e + 1]);
-         ++k) {
-      const double term = sum_coefficient[k] * here[static_cast<std::size_t>(sum_source[k])];
-      sum += term;
-      whole += std::abs(term);
-    }
-    if (std::abs(sum) > negligible * whole) return true;
-  }
-  return false;
+  if (these.empty()) return;
+  VectorXd sum(pattern.nonZeros()), whole(sum.size());
+  sums.of(here.data(), sum.data());
+  const VectorXd sizes = Eigen::Map<const VectorXd>(here.data(), std::ssize(here)).cwiseAbs();
+  sums.magnitudes().of(sizes.data(), whole.data());
+  std::erase_if(these, [&](int row) {
+    const auto r = static_cast<std::size_t>(row);
+    for (auto e = static_cast<std::size_t>(row > 0 ? row_ends[r - 1] : 0),
+              end = static_cast<std::size_t>(row_ends[r]);
+         e < end; ++e)
+      if (std::abs(here[e] - there[e]) > rounding * std::abs(here[e])) return false;
+    for (Index e = pattern.outerIndexPtr()[row]; e < pattern.outerIndexPtr()[row + 1]; ++e)
+      if (std::abs(sum[e]) > negligible * whole[e]) return true;
+    return false;
+  });
 }
 
 // A row that follows from the eliminated ones has no gradient in any pose that these allow, where one that is
@@ -133,7 +131,7 @@ void System::find_implied_rows() {
     for (end = first + 1; end < d.rows && same(end, first);) ++end;
     if (source[static_cast<std::size_t>(first)] >= 0) add_dependent(both, first, end, digits, d.implied);
   }
-  std::erase_if(d.implied, [&](int row) { return d.has_own_coefficient(row, digits, before, scratch); });
+  d.keep_own_coefficients(d.implied, digits, before, scratch);
   std::sort(d.implied.begin(), d.implied.end());
 }
 

@@ -56,8 +56,8 @@ struct System::Data {
   void add_blocks(const Structure& structure, bool eliminate_linear);
   void build_coordinates();
   void move_origin();
-  bool has_own_coefficient(Index row, double negligible, const std::vector<double>& there,
-                           const std::vector<double>& here) const;
+  void keep_own_coefficients(std::vector<int>& these, double negligible, const std::vector<double>& there,
+                             const std::vector<double>& here) const;
   void build_forces(const Structure& structure);
   void find_integrators(const Structure& structure);
   void build_jacobian_map();

@@ -253,16 +253,16 @@ TEST_CASE("a swing is told whatever else is stiffer and does not swing for its d
         elastic_step_warning(*model, initial_state(model->structure, model->system).state, options),
         "swing on springs, ");
   };
-  const auto period = [](double k) { return Approx(2 * pi / std::sqrt(k)).epsilon(6e-3); };
-  CHECK(told_period({{1e6, 0}, {4e6, 1e4}}) == period(1e6));
-  CHECK(told_period({{1e6, 0}, {4e6, 3e3}}) == period(4e6));
-  CHECK(told_period({{1e6, 0}, {1e6, 1e4}, {100, 0}}) == period(1e6));  // alike but for damping
-  CHECK(told_period({{1e6, 5e4}, {4e6, 1e4}, {100, 0}}) == period(100));
+  const auto period_of = [](double k) { return Approx(2 * pi / std::sqrt(k)).epsilon(6e-3); };
+  CHECK(told_period({{1e6, 0}, {4e6, 1e4}}) == period_of(1e6));
+  CHECK(told_period({{1e6, 0}, {4e6, 3e3}}) == period_of(4e6));
+  CHECK(told_period({{1e6, 0}, {1e6, 1e4}, {100, 0}}) == period_of(1e6));  // alike but for damping
+  CHECK(told_period({{1e6, 5e4}, {4e6, 1e4}, {100, 0}}) == period_of(100));
   CHECK(std::isnan(told_period({{1e6, 5e4}, {4e6, 1e4}})));
   // More that do not swing, no two alike, than directions are looked into.
   Springs many{{1e6, 100}};
   for (int i = 0; i < 80; ++i) many.emplace_back(4e6 * (1 + 0.05 * i), 2.2e4);
-  CHECK(told_period(many) == period(1e6));
+  CHECK(told_period(many) == period_of(1e6));
 }
 
 // A mass of 1.2 kg that a load of 500 N keeps off a wall: w^2 = k / m, of what pulls only as of any spring.
