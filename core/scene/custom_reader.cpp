@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/scene/custom_reader.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <set>
 
 #include "core/scene/csv_table.hpp"
 #include "core/scene/element_members.hpp"
+#include "core/scene/overrides.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/structure/structure_error.hpp"
 #include "core/text/nearest_name.hpp"
@@ -23,6 +25,20 @@ std::string entry_key(std::string_view table, std::size_t index) {
   return "structure." + std::string(table) + "[" + std::to_string(index) + "]";
 }
 
+// An override of an entry that only the CSV file has: --set structure.nodes.B.mass=2 makes a table,
+// structure.rods[0].mass=2 an entry that lacks what each must have, `needed`.
+bool is_in_file(TableReader& table, const std::string& name, const std::string& needed) {
+  const TomlTree* tree = table.member(name);
+  const std::string said = entries_in_file(name, table.member(name + "_file"));
+  if (!tree || said.empty()) return false;
+  const auto made = [&](const TomlTree& part) {
+    return part.kind == TomlTree::Kind::table && part.where.file == override_source && !part.find(needed);
+  };
+  const bool only_there = made(*tree) || std::ranges::any_of(tree->items, made);
+  if (only_there) table.problem(name, "has no such entry; " + said);
+  return only_there;
+}
+
 // `nodes = "nodes.csv"`: the key that names a file is another one.
 bool names_a_file(TableReader& table, const std::string& name) {
   const TomlTree* tree = table.member(name);
@@ -33,7 +49,7 @@ bool names_a_file(TableReader& table, const std::string& name) {
 }
 
 void read_nodes(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
-  if (names_a_file(table, "nodes")) return;
+  if (names_a_file(table, "nodes") || is_in_file(table, "nodes", "name")) return;
   for (const TomlTree* tree : table.tables("nodes")) {
     const std::string key = entry_key("nodes", spec.nodes.size());
     notes.locations[key] = tree->where;
@@ -46,7 +62,7 @@ void read_nodes(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
 }
 
 void read_rods(TableReader& table, CustomSpec& spec, SceneNotes& notes) {
-  if (names_a_file(table, "rods")) return;
+  if (names_a_file(table, "rods") || is_in_file(table, "rods", "nodes")) return;
   for (const TomlTree* tree : table.tables("rods")) {
     const std::string key = entry_key("rods", spec.rods.size());
     notes.locations[key] = tree->where;

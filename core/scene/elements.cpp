@@ -28,6 +28,7 @@ void read_table(TableReader& entry, ParamSet& values, const std::string& folder,
   notes.files.insert(file.path);
   if (!file.error.empty()) return entry.problem("table", file.error);
   std::vector<double> times, sizes;
+  const std::size_t before = notes.problems.size();
   const auto rows = read_csv(file.text, file.path, columns, notes);
   for (const auto& row : rows) {
     if (row.numbers.size() < 2) continue;  // noted
@@ -35,7 +36,8 @@ void read_table(TableReader& entry, ParamSet& values, const std::string& folder,
     times.push_back(row.numbers.at("t"));
     sizes.push_back(row.numbers.at("value"));
   }
-  if (rows.size() < 2) entry.problem("table", "must have at least two rows");
+  if (rows.size() < 2 && notes.problems.size() == before)  // else it may have, of other columns
+    entry.problem("table", "must have at least two rows");
   values.set("times", std::move(times));
   values.set("values", std::move(sizes));
   values.set("table", std::string());
@@ -57,14 +59,14 @@ void check_table(TableReader& entry, const ParamSet& values, bool jumps,
       return rows.empty() ? entry.problem("times", what) : notes.add(rows[i], "t", what);
 }
 
-void check_motion(TableReader& entry, const ParamSet& values) {
+void check_motion(TableReader& entry, const ParamSet& values, bool has_table) {
   const std::string& motion = values.text("motion");
   const auto needs = [&](const char* key, bool given) {
     if (!given) entry.problem(key, "is missing; motion = \"" + motion + "\" needs it");
   };
   if (motion == "rate") needs("rate", entry.has("rate"));
   if (motion == "smooth") needs("to", entry.has("to"));
-  if (motion == "table") needs("times", !values.vector("times").empty());
+  if (motion == "table") needs("times", has_table || !values.vector("times").empty());
 }
 
 void read_members(TableReader& entry, Members members, SceneElement& element) {
@@ -208,7 +210,7 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
   }
   const bool left_out =
       !element.enabled && element.values.has("table") && !element.values.text("table").empty();
-  if (element.values.has("motion") && !left_out) check_motion(entry, element.values);
+  if (element.values.has("motion") && !left_out) check_motion(entry, element.values, !element.table.empty());
   entry.warn_idle(kind->params(), element.values);
   if (element.values.has("stiffness") && !entry.has("stiffness") && !entry.has("damping"))
     entry.problem("stiffness", "is missing, and so is damping: it would do nothing");

@@ -227,7 +227,22 @@ void apply(TomlTree& root, std::string_view key, std::string_view text) {
   made_at(root, steps) = std::move(value);
 }
 
+// Of keys into lists that may be in files beside the scene.
+std::string in_a_file(const TomlTree& root, const std::string& key) {
+  const TomlTree* structure = root.find("structure");
+  for (const std::string name : {"nodes", "rods"})
+    if (structure && key.starts_with("structure." + name))
+      if (std::string said = entries_in_file(name, structure->find(name + "_file")); !said.empty())
+        return "; " + said;
+  return "";
+}
+
 }  // namespace
+
+std::string entries_in_file(const std::string& name, const TomlTree* file) {
+  if (!file || file->kind != TomlTree::Kind::text || file->text.empty()) return "";
+  return "those of " + name + "_file = " + in_quotes(file->text) + " are changed in that file";
+}
 
 std::vector<std::string> place_of_key(TomlTree root, const std::string& key) {
   std::vector<std::string> place;
@@ -256,7 +271,7 @@ void apply_overrides(TomlTree& root, const std::vector<std::string>& overrides,
       if (equals == std::string::npos) throw Refusal{"must be key=value"};
       apply(root, key, std::string_view(text).substr(equals + 1));
     } catch (const Refusal& refusal) {
-      problems.push_back({from_command_line, key, refusal.message});
+      problems.push_back({from_command_line, key, refusal.message + in_a_file(root, key)});
     }
   }
 }

@@ -17,6 +17,10 @@ namespace unfurl {
 void apply_overrides(TomlTree& root, const std::vector<std::string>& overrides,
                      std::vector<SceneProblem>& problems);
 
+// Of a list whose entries stand in a CSV file, too, NAME_file = `file`: what is said where a key leads to
+// none of its own. Empty: there is no such file.
+std::string entries_in_file(const std::string& name, const TomlTree* file);
+
 // Where such a key leads, part by part, entries by their index; the same for all of its names.
 std::vector<std::string> place_of_key(TomlTree root, const std::string& key);
 

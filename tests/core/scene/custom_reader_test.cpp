@@ -277,4 +277,51 @@ TEST_CASE("what is wrong with a table over time is told by its file and row") {
   CHECK(told("0,0\n") == scene + ":7:9: forces[0].table: must have at least two rows");
 }
 
+TEST_CASE("a table over time with other columns is told by them alone") {
+  const Folder folder;
+  const std::string scene =
+      folder.write("s.toml",
+                   "[structure]\nkind = 'pendulum'\n[[constraints]]\nkind = 'angle'\nname = 'motor'\n"
+                   "nodes = ['O', 'bob']\nmotion = 'table'\ntable = 'f.csv'\n");
+  const auto told = [&](const std::string& text) {
+    folder.write("f.csv", text);
+    return file_error_of(scene);
+  };
+  const std::string columns = told("t_s,value_deg\n0,0\n1,1\n");
+  CHECK(columns.find("unknown column 'value_deg'") != std::string::npos);
+  for (const char* wrong : {"two rows", "times"}) CHECK(columns.find(wrong) == std::string::npos);
+  const std::string one = told("t,value\n0,0\n");
+  CHECK(one.find("constraints[0].table: must have at least two rows") != std::string::npos);
+  CHECK(one.find("times") == std::string::npos);
+}
+
+TEST_CASE("keys into a list of a CSV file are told where its entries are") {
+  const Folder folder;
+  folder.write("n.csv", "name,x,y,z,fixed,mass\nA,0,0,0,1,0\nB,1,0,0,0,1\n");
+  folder.write("r.csv", "a,b,mass\nA,B,1\n");
+  const std::string scene = folder.write("s.toml", head + "nodes_file = 'n.csv'\nrods_file = 'r.csv'\n");
+  const auto told = [&](const std::string& change) -> std::string {
+    try {
+      read_scene_file(scene, {change});
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string nodes = "those of nodes_file = 'n.csv' are changed in that file",
+                    rods = "those of rods_file = 'r.csv' are changed in that file";
+  for (const char* change :
+       {"structure.nodes.B.mass=2", "structure.nodes[0].mass=2", "structure.nodes[1].mass=2"}) {
+    INFO(change);
+    CHECK_THAT(told(change), Catch::EndsWith(nodes));
+  }
+  for (const char* change :
+       {"structure.rods.A-B.mass=2", "structure.rods[0].mass=2", "structure.rods[1].mass=2"}) {
+    INFO(change);
+    CHECK_THAT(told(change), Catch::EndsWith(rods));
+  }
+  // One more beside those of the file is no mistake.
+  CHECK(told("structure.nodes[0]={name='C', position=[2, 0, 0], fixed=true}") == "");
+}
+
 }  // namespace custom_reader_test
