@@ -82,6 +82,7 @@ double misfit_of_rows(const System& system, const ConstVec& q) {
   const std::vector<int> sources = system.all_sources();
   for (const Drive& drive : system.drives())
     std::erase_if(rows, [&](int r) { return sources[static_cast<std::size_t>(r)] == drive.constraint; });
+  for (const int implied : system.rows_of_digits()) std::erase(rows, implied);
   const MatrixXd G(picked_rows(unit_rows(system, q), rows));
   if (same_rank(G, round_off, meant)) return 0;  // as nearly always, and cheaper
   const VectorXd values = singular_values(G);

@@ -31,9 +31,10 @@ constexpr double violated = 1e-7;
 // Of unit rows: round-off of a dense factorisation, far below the distance of real poses from singular ones.
 constexpr double dependent = 1e-10;
 
-// Rows of unit size, and what they were divided by.
+// Rows of unit size, and what they were divided by. What is none of the equations is zero.
 MatrixXd dense_unit_rows(const System& system, const VectorXd& q, VectorXd& norms) {
   MatrixXd G(system.all_jacobian(q));
+  for (const int r : system.rows_of_digits()) G.row(r).setZero();
   norms = G.rowwise().norm();
   for (Index r = 0; r < G.rows(); ++r)
     if (norms[r] > 0) G.row(r) /= norms[r];

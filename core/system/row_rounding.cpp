@@ -135,4 +135,19 @@ void System::find_implied_rows() {
   std::sort(d.implied.begin(), d.implied.end());
 }
 
+std::vector<int> System::rows_of_digits() const {
+  std::vector<int> rows;
+  int first_kept = 0;
+  for (const ConstraintBlock* block : data_->kept) {
+    int first = 0;
+    auto at = data_->all.begin();
+    for (; at != data_->all.end() && *at != block; ++at) first += (*at)->rows();
+    for (const int row : data_->implied)
+      if (at != data_->all.end() && row >= first_kept && row < first_kept + block->rows())
+        rows.push_back(first + row - first_kept);
+    first_kept += block->rows();
+  }
+  return rows;
+}
+
 }  // namespace unfurl

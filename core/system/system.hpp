@@ -168,6 +168,8 @@ class System {
   std::vector<std::string> all_names() const;
   // Of them, those that follow from the others of their own constraint, whatever the pose: not to be counted.
   std::vector<int> implied_rows(const ConstVec& q) const;
+  // Of them, those that eliminated ones imply to the digits of positions: no equations.
+  std::vector<int> rows_of_digits() const;
   std::vector<int> all_sources() const;  // indices in Structure::constraints, -1: a rod
   VectorXd all_lengths() const;
 

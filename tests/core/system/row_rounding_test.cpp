@@ -136,6 +136,29 @@ TEST_CASE("a linkage in a turned plane moves as its one freedom says, whatever d
       }
 }
 
+// The crank is turned upright from the 73 degrees that it begins at, against nothing but what the plane
+// holds.
+TEST_CASE("a linkage in a turned plane is driven whatever digits its positions have") {
+  for (const bool collinear : {false, true})
+    for (const int decimals : {16, 12, 11, 10, 9})
+      for (int i = 0; i < 3; ++i) {
+        INFO((collinear ? "collinear, " : "coplanar, ") << decimals << " decimals, turn " << i);
+        const Parallelogram linkage{collinear, false, some_turn(i), Vec3::Zero(), decimals};
+        const Simulation run = testing::run_scene(
+            linkage.scene() +
+            "[[constraints]]\nkind = 'angle'\nname = 'crank'\nnodes = ['B', 'A', 'C']\naxis = " +
+            Parallelogram::vector(linkage.turn * -Vec3::UnitY(), 16) +
+            "\nmotion = 'smooth'\nto = 90\nduration = 0.2\n");
+        INFO(run.message);
+        REQUIRE(run.status == RunStatus::completed);
+        const VectorXd q = testing::end_positions(run);
+        CHECK((q.segment<3>(6) - q.head<3>() - linkage.turn * Vec3(0, 0, std::hypot(0.3, 1))).norm() <=
+              1e-9 + 10 * std::pow(10, -decimals));
+        for (const std::string& warning : run.warnings)
+          CHECK(warning.find("follow from one another") == std::string::npos);
+      }
+}
+
 TEST_CASE("a linkage far from the origin moves as near it") {
   // Rounding leaves 1e-16 of the distance in each coordinate.
   for (const double far : {1e2, 1e3, 1e4, 1e5})
