@@ -24,7 +24,11 @@ namespace {
 // The estimate aims here, as shares of the tolerance: below `most`, and not much more work than for `least`.
 constexpr double most = 0.5, least = 0.02, aim = 0.2;
 // Numbers of steps are multiples of 35, for what other grids share with them (solve).
+// They are counted over the time that the motion takes.
 constexpr long multiple = 35, first_steps = 4 * multiple, fewest_steps = multiple, max_steps = 100'000'000;
+// Of what deploys it is looked for in shares of the time that is asked for, the least of them first. Next to
+// the pose steps are costly, and so is one that ends there: the grid goes on behind it, by that share.
+constexpr double least_share = 1.0 / 1024, next_share = 4, beyond_pose = 1.1;
 constexpr int tries = 8;   // per number of stages
 constexpr int doubts = 4;  // of them, runs whose own books do not agree: more steps do not mend them then
 // States of a run beside which another one is solved, where their grids do not meet.
@@ -115,6 +119,8 @@ class Picker {
   }
 
   Simulation pick() {
+    if (!model_->structure.deployment.empty()) find_span();
+    if (stopped_) return std::move(*stopped_);
     for (const int stages : stage_choices()) {
       // Where fewer stages reach the tolerance, more do so at a lower price with few steps or not at all.
       const bool few = stages > 4 && !model_->structure.deployment.empty() && reached();
@@ -136,6 +142,22 @@ class Picker {
   }
 
  private:
+  // Where the structure is deployed long before the end, steps that are shares of all the time would be as
+  // long as the motion, and cost most where they do not follow it.
+  void find_span() {
+    double work = 0;
+    for (double share = least_share; share < 1; share *= next_share) {
+      SolverOptions o = options_;
+      span_ = o.end_time = share * options_.end_time;
+      const auto pilot = run(o, stage_choices().front(), fewest_steps, work);
+      if (!pilot) return;
+      if (pilot->status != RunStatus::deployed || !mistrust(*pilot, diagnose_books(*pilot)).empty()) continue;
+      span_ = beyond_pose * pilot->trajectory.end_time();
+      if (span_ > 0) return;
+    }
+    span_ = options_.end_time;
+  }
+
   SolverOptions undamped() const {
     SolverOptions o = options_;
     o.method = "dvm", o.nodes = "lobatto", o.constraints_at = "nodes";
@@ -170,7 +192,7 @@ class Picker {
   }
   std::optional<Simulation> run(SolverOptions o, int stages, double steps, double& work) {
     o.stages = stages;
-    o.step = options_.end_time / std::round(steps);
+    o.step = span_ / std::round(steps);
     Simulation out = simulate(model_, o, quiet_);
     work += work_of(out);
     if (out.status != RunStatus::stopped) return out;
@@ -178,11 +200,11 @@ class Picker {
     return std::nullopt;
   }
 
-  // With so many steps to the end; nothing where the user stopped it. The second solution has a stage more
-  // and 7/5 as many steps (without stages 12/5: an error of order 2 is a sixth then), which meet the first
-  // ones at every fifth of those, so that what happens within a step falls elsewhere in its own. One that
-  // agrees may do so by chance where the motion is not smooth (something that is seen only at the end of a
-  // step, at a time that both have): a third, with 9/7 (16/7) as many, has to agree as well; all three meet
+  // With so many steps over the motion; nothing where the user stopped it. The second solution has a stage
+  // more and 7/5 as many steps (without stages 12/5: an error of order 2 is a sixth then), which meet the
+  // first ones at every fifth of those, so that what happens within a step falls elsewhere in its own. One
+  // that agrees may do so by chance where the motion is not smooth (something that is seen only at the end of
+  // a step, at a time that both have): a third, with 9/7 (16/7) as many, has to agree as well; all three meet
   // at every 35th step only. Of a method that damps what its steps do not resolve all grids may agree on
   // rest: there the third is dvm's, which keeps it; should that fail, the method's own.
   std::optional<Judged> solve(int stages, long steps) {
@@ -257,7 +279,7 @@ class Picker {
 
   bool reaches(const Judged& p) const { return p.trusted && p.estimate <= most * options_.tolerance; }
   bool reached() const { return best_ && reaches(*best_); }
-  static long steps_of(const Simulation& run) { return std::lround(run.options.end_time / run.options.step); }
+  long steps_of(const Simulation& run) const { return std::lround(span_ / run.options.step); }
 
   // The least work among those that reach the tolerance; without any, the smallest estimate of those that are
   // trusted, or else of all.
@@ -280,7 +302,8 @@ class Picker {
   const Method& method_;
   bool damps_;
   double unknowns_;
-  double spent_ = 0;  // of most_work
+  double span_ = options_.end_time;  // of the motion [s]
+  double spent_ = 0;                 // of most_work
   std::optional<Judged> best_;
   std::optional<Simulation> stopped_;
   int round_off_ = 0;  // numbers of stages that met it

@@ -305,8 +305,6 @@ TEST_CASE("a pick that is cancelled has stopped, whichever of its runs it was") 
   }
 }
 
-}  // namespace tolerance_test
-
 // A position controller of k = 20 N m/rad holds an arm of I = 1 kg m^2; its command is 90 degrees at points
 // 0.5 ms apart from 5.091 s to 5.131 s but for one, which is 180 degrees. What a spike of area A (in rad s)
 // leaves is a swing of k A / (I omega); 1 - (omega 0.02 s)^2 / 2 of it, should the spline swing as far beside
@@ -361,3 +359,30 @@ end_time = 10
     CHECK(std::hypot(x, v / std::sqrt(20.0)) == Approx(swing).epsilon(1e-3));
   }
 }
+
+// Candidates whose steps are as long as the motion cost a hundred times what they should. Of the time that is
+// asked for at least 1/4 is motion, or it is looked for in less: 35 steps over that are 30 or more up to the
+// pose, however much time is asked for, and the same motion takes about the same solves.
+TEST_CASE("a tolerance costs what the motion takes however much time is asked for") {
+  for (const char* name : {"hoberman", "scissor_mast"}) {
+    double deployed = 0;
+    long solves = 0;
+    for (const double end_time : {2.0, 60.0, 2000.0}) {
+      Scene scene = read_scene_file(find_scene(name), {"solver.end_time=" + text_of(end_time)});
+      scene.solver.model = "full";
+      scene.solver.tolerance = 1e-6;
+      const Simulation run = simulate_as_asked(build_model(scene), scene.solver);
+      INFO(name << " in " << end_time << " s: " << run.steps << " steps, " << run.trajectory.end_time()
+                << " s");
+      REQUIRE(run.status == RunStatus::deployed);
+      CHECK(run.options.end_time == end_time);
+      CHECK(run.position_estimate <= 1e-6);
+      if (end_time > 2) CHECK(run.steps >= 30);
+      if (solves == 0) deployed = run.trajectory.end_time(), solves = run.newton_iterations;
+      CHECK(run.trajectory.end_time() == Approx(deployed).epsilon(0).margin(1e-5));
+      CHECK(run.newton_iterations < 3 * solves);
+    }
+  }
+}
+
+}  // namespace tolerance_test
