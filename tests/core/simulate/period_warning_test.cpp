@@ -253,7 +253,7 @@ TEST_CASE("a swing is told whatever else is stiffer and does not swing for its d
         elastic_step_warning(*model, initial_state(model->structure, model->system).state, options),
         "swing on springs, ");
   };
-  const auto period_of = [](double k) { return Approx(2 * pi / std::sqrt(k)).epsilon(6e-3); };
+  const auto period_of = [](double square) { return Approx(2 * pi / std::sqrt(square)).epsilon(6e-3); };
   CHECK(told_period({{1e6, 0}, {4e6, 1e4}}) == period_of(1e6));
   CHECK(told_period({{1e6, 0}, {4e6, 3e3}}) == period_of(4e6));
   CHECK(told_period({{1e6, 0}, {1e6, 1e4}, {100, 0}}) == period_of(1e6));  // alike but for damping
