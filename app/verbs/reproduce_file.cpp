@@ -86,18 +86,32 @@ std::optional<Receipt> receipt_of_figure(const fs::path& folder, const WrittenFi
   return found;
 }
 
-// A run that was exported is kept whole, and sums over its motion differ in their last digits from those of
-// one in parts: the format that it was exported to, if to any.
-std::vector<std::string> export_of_run(const std::vector<WrittenFiles::Verdict>& listed) {
+const ExportFormat* format_of(const std::string& name) {
   for (const ExportFormat& format : export_formats())
-    for (const WrittenFiles::Verdict& file : listed)
-      if (file.owner == "run" &&
-          (file.name == format.result || file.name.starts_with(std::string(format.result) + "/")))
-        return {"--export", std::string(format.name)};
-  return {};
+    if (name == format.result || name.starts_with(std::string(format.result) + "/")) return &format;
+  return nullptr;
 }
 
-// Tables carry no receipt themselves: a figure beside them does or, of a run, scene.toml says all.
+// What was exported is by its own format. Beside it, a run that was exported is kept whole, and sums over its
+// motion differ in their last digits from those of one in parts: some format that it was exported to.
+std::vector<std::string> export_of_run(const std::string& name,
+                                       const std::vector<WrittenFiles::Verdict>& listed) {
+  const ExportFormat* format = format_of(name);
+  for (auto file = listed.begin(); !format && file != listed.end(); ++file)
+    if (file->owner == "run") format = format_of(file->name);
+  if (!format) return {};
+  return {"--export", std::string(format->name)};
+}
+
+// Files for ParaView are named after their scene; nothing else tells its name.
+std::string name_of_run(const std::vector<WrittenFiles::Verdict>& listed) {
+  for (const WrittenFiles::Verdict& file : listed)
+    if (const fs::path path = file.name; file.owner == "run" && path.extension() == ".pvd")
+      return path.stem().string();
+  return "scene";
+}
+
+// Tables and arrays carry no receipt themselves: a figure beside them does or, of a run, scene.toml says all.
 Receipt receipt_beside(const fs::path& file) {
   const std::string extension = file.extension().string();
   if (takes_note(extension) || extension == ".mp4")
@@ -113,15 +127,14 @@ Receipt receipt_beside(const fs::path& file) {
   if (own == listed.end())
     throw FileError(file, none + "is not in the list of what unfurl wrote there (.unfurl)");
   Receipt receipt;
-  if (extension == ".csv") {
-    if (const auto figure = receipt_of_figure(*folder, *own, listed)) {
-      receipt = *figure;
-    } else if (own->owner == "run" && name.find('/') == std::string::npos) {
-      receipt.command = {"run", "scene"};
-      for (const std::string& word : export_of_run(listed)) receipt.command.push_back(word);
-      receipt.name = "scene";
-      receipt.scene = bytes_of(*folder / "scene.toml");
-    }
+  const bool table = extension == ".csv" && name.find('/') == std::string::npos;
+  if (const auto figure = extension == ".csv" ? receipt_of_figure(*folder, *own, listed) : std::nullopt) {
+    receipt = *figure;
+  } else if (own->owner == "run" && (table || format_of(name))) {
+    receipt.name = name_of_run(listed);
+    receipt.command = {"run", word_of_scene(receipt.name)};
+    for (const std::string& word : export_of_run(name, listed)) receipt.command.push_back(word);
+    receipt.scene = bytes_of(*folder / "scene.toml");
   }
   if (receipt.command.empty())
     throw FileError(file, none +

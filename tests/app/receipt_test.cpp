@@ -151,6 +151,20 @@ TEST_CASE("a table carries no receipt, and is made again from what lies beside i
   CHECK(run_program({"verify", dir / "run/own.csv"}).code == 5);
 }
 
+TEST_CASE("arrays and long tables that a run was exported to are made again") {
+  const ScratchDirectory dir;
+  REQUIRE(run_program({"run", "four_bar", "-o", dir / "run", "--set", "solver.end_time=0.05", "--export",
+                       "vtk,csv,npy,mat", "--quiet"})
+              .code == 0);
+  for (const char* name : {"run.mat", "csv/nodes.csv", "npy/positions_m.npy", "vtk/four_bar.pvd",
+                           "vtk/four_bar_000002.vtu", "series.csv"}) {
+    const ProgramResult again = run_program({"reproduce", dir / ("run/" + std::string(name))});
+    INFO(name << again.err);
+    CHECK(again.code == 0);
+    CHECK(again.out.starts_with("the same, byte by byte"));
+  }
+}
+
 // 2501 states: more than one part of a thousand. A run that is exported is kept whole, and adds up the work
 // of its motor from the start on, not part by part.
 TEST_CASE("tables of a run in parts and of one that is kept whole are both made again") {
