@@ -63,11 +63,25 @@ std::string_view to_string(RunStatus status) {
 
 namespace {
 
+// Methods that hold the constraints fail in such a pose, and say why.
+std::string drift_warning(const Model& model, const SolverOptions& options) {
+  const Method* method = find_method(options.method);
+  if (!method || method->claims(options).holds_positions) return "";
+  const std::string rods = held_at_second_order(model.system, node_positions(model.structure));
+  if (rods.empty()) return "";
+  return rods +
+         " hold each other in this pose, and what looks free there is not (as rods in line are not): " +
+         options.method +
+         " lets it move as the constraints drift, and its rod forces mean nothing; draw them a little slack, "
+         "or let rods give (structure.rod_model)";
+}
+
 std::vector<std::string> warnings_of_start(const Model& model, const InitialState& start,
                                            const SolverOptions& options) {
   std::vector<std::string> warnings = model.structure.notes;
   std::vector<std::string> said{velocity_warning(start, model.structure),
-                                elastic_step_warning(model, start.state, options)};
+                                elastic_step_warning(model, start.state, options),
+                                drift_warning(model, options)};
   if (model.structure.kind == "custom")
     said.push_back(misfit_warning(model.system, node_positions(model.structure)));
   for (std::string& warning : said)
