@@ -8,6 +8,7 @@
 
 #include "core/forces/bending.hpp"
 #include "core/forces/spring.hpp"
+#include "core/integrators/index1.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/math/factors.hpp"
 #include "core/math/saddle_solver.hpp"
@@ -64,10 +65,11 @@ struct FastestPeriods {
   double of_rods = std::numeric_limits<double>::infinity(), on_springs = of_rods;  // [s]
 };
 
-// Small motions about a pose, M x'' + C x' + K x + G^T y = 0, G x = 0. A mode of w^2 = k that is damped by c
-// swings where k > c^2 / 4: the largest eigenvalues of K - C M^-1 C / 4 are those of modes that do, whatever
-// is stiffer and does not. Without damping this is K, as it is where rods that give are all there is: which
-// of their waves a step does not follow matters though they die out.
+// Small motions about a pose at rest, M x'' + C x' + K x + G^T y = 0, G x = 0, K with what the rows' forces
+// lambda . Phi'' make of it: of what turns freely under pretension the two cancel. A mode of w^2 = k that is
+// damped by c swings where k > c^2 / 4: the largest eigenvalues of K - C M^-1 C / 4 are those of modes that
+// do, whatever is stiffer and does not. Without damping this is K, as it is where rods that give are all
+// there is: which of their waves a step does not follow matters though they die out.
 class SmallMotions {
  public:
   SmallMotions(const Model& model, const State& state)
@@ -81,6 +83,7 @@ class SmallMotions {
     system_.jacobian(q_, G_, scratch);
     const VectorXd still = VectorXd::Zero(q_.size());
     system_.force_derivatives(t_, q_, still, by_z_, by_w_);
+    add_rows(state);
     if (!has_waves(structure_)) return;
     const VectorXd no_tension = VectorXd::Zero(std::ssize(system_.giving_rods()));
     system_.force_derivatives(t_, q_, still, no_tension, without_rods_, by_w_);
@@ -108,7 +111,7 @@ class SmallMotions {
       const double norm = std::sqrt(next.dot(system_.mass() * next));
       if (!(norm > 0)) return {};
       V.col(m) = next / norm;
-      next = -answer(by_z_ * V.col(m));
+      next = -answer(pull(V.col(m)));
       if (by_w_.norm() > 0) next -= 0.25 * answer(by_w_ * answer(by_w_ * V.col(m)));
       if (!next.allFinite()) return {};
       const double size = std::sqrt(next.dot(system_.mass() * next));
@@ -136,9 +139,17 @@ class SmallMotions {
   }
 
  private:
+  void add_rows(const State& state) {
+    rows_.resize(by_z_.rows(), by_z_.cols());
+    if (!has_springs(structure_)) return;
+    VectorXd acceleration(by_z_.rows()), lambda(G_.rows());
+    if (Index1(system_).evaluate_at_rest(state, acceleration, lambda)) rows_ = system_.curvature(q_, lambda);
+  }
+  VectorXd pull(const VectorXd& x) const { return by_z_ * x - rows_ * x; }
+
   // Of a mode with |x| = 1 in the mass metric.
   void note(const VectorXd& x, FastestPeriods& found) const {
-    const double square = -x.dot(by_z_ * x), rate = -x.dot(by_w_ * x);
+    const double square = -x.dot(pull(x)), rate = -x.dot(by_w_ * x);
     if (!(square > 0) || rate > 2 * std::sqrt(square)) return;
     double& period = of_rods(x) > 0.5 * square ? found.of_rods : found.on_springs;
     period = std::min(period, 2 * pi / std::sqrt(square));
@@ -159,7 +170,7 @@ class SmallMotions {
   System system_;
   double t_;
   VectorXd q_;
-  SparseRows G_, by_z_, by_w_, without_rods_;
+  SparseRows G_, by_z_, by_w_, rows_, without_rods_;
   ForceDerivative bending_;
 };
 

@@ -340,4 +340,36 @@ stiffness = )" + exact_number(stiffness) +
   CHECK(told_spring(said(100, 0, rod)) == Approx(2 * pi / 10).epsilon(6e-3));
 }
 
+// A rod of 1 m turns about A, drawn by a spring from P beside A, of the length d = sqrt(2 - 2 sin t) where
+// the rod has turned by t towards it: V = k (d - d0)^2 / 2, V'' = k d'^2 + k (d - d0) d''. In the plane, t =
+// 0, d' = -1 / sqrt(2) and d'' = -1 / (2 sqrt(2)). About the axis AP nothing changes d.
+TEST_CASE(
+    "under pretension what rods keep at its distance swings slower than the spring's force alone says") {
+  constexpr double stretch = 1e6, mass = 0.3;
+  const auto said = [](double length, double damping, bool plane) {
+    const auto model =
+        model_of(R"([structure]
+kind = 'custom'
+nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', position = [1, 0, 0]},
+  {name = 'P', position = [0, 1, 0], fixed = true}]
+rods = [{nodes = ['A', 'B'], mass = )" +
+                 exact_number(mass) + "}]\n" +
+                 (plane ? "constraints = [{kind = 'plane', nodes = ['B'], normal = [0, 0, 1]}]\n" : "") +
+                 "[[forces]]\nkind = 'spring'\nnodes = ['P', 'B']\nstiffness = " + exact_number(stretch) +
+                 "\ndamping = " + exact_number(damping) + "\nfree_length = " + exact_number(length) + "\n");
+    SolverOptions options;
+    options.step = 10;
+    return elastic_step_warning(*model, initial_state(model->structure, model->system).state, options);
+  };
+  for (const double length : {0.9, 1.2, std::sqrt(2.0), 1.6})
+    for (const bool plane : {true, false}) {
+      const double d = std::sqrt(2.0), stiffness = stretch / 2 - stretch * (d - length) / (2 * d);
+      CHECK(number_behind(said(length, 0, plane), "swing on springs, ") ==
+            Approx(2 * pi / std::sqrt(stiffness / (mass / 3))).epsilon(6e-3));
+    }
+  // Overdamped in the plane, free to turn out of it.
+  CHECK(said(1.41, 1e4, false).empty());
+  CHECK(said(0.9, 1e4, false).empty());
+}
+
 }  // namespace period_warning_test
