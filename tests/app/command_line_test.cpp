@@ -261,7 +261,7 @@ TEST_CASE("margin: drives against resistances by source, in words, JSON and file
   }
   CHECK(torque[1] == Approx(2 * torque[0]).epsilon(1e-9));
   const ProgramResult jams = run_program(
-      {"margin", "hoop6", "--stuck", "--set", "structure.fold_angle=60", "--set", "structure.units=16"});
+      {"margin", "hoop6", "--stuck", "--set", "structure.fold_angle=60", "--set", "structure.units=30"});
   CHECK(jams.code == 3);
   CHECK(contains(jams.err, "the path cannot be followed to a deployed pose, no further than to 0.0"));
 }

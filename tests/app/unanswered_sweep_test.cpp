@@ -233,7 +233,7 @@ TEST_CASE("a failed run is no modelling choice to compare with") {
   CHECK(study.code == 4);
   CHECK(study.err.find("unfurl: warning: as the scene says: failed: ") != std::string::npos);
   const std::string report = file_text(dir / "models/models.md");
-  const std::size_t row = report.find("| as the scene says (failed) |");
+  const std::size_t row = report.find("| as the scene says (failed: from t = ");
   REQUIRE(row != std::string::npos);
   // Neither differences nor forces nor their times.
   CHECK(report.substr(row, report.find('\n', row) - row).ends_with("|  |  |  |  |  |"));
