@@ -137,6 +137,7 @@ void System::find_implied_rows() {
 
 std::vector<int> System::rows_of_digits() const {
   std::vector<int> rows;
+  if (data_->implied.empty()) return rows;
   int first_kept = 0;
   for (const ConstraintBlock* block : data_->kept) {
     int first = 0;
