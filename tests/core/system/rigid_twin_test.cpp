@@ -43,4 +43,33 @@ rods = [{nodes = ["O", "A"], mass = 1.2, area = 3e-5}, {nodes = ["A", "B"], mass
   }
 }
 
+// An offload's trolley stands above the node at t = 0, and a bent rod's stiffness is that of its own length.
+TEST_CASE("forces do in the rigid twin what they do in the structure") {
+  const auto model = testing::model_of(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0.5, 0, 0], fixed = true}, {name = "A", position = [1.7, 0.1, 0.9], mass = 0.4},
+         {name = "B", position = [2.9, 0.4, 1.1], mass = 0.6}]
+rods = [{nodes = ["O", "A"], mass = 1.2}, {nodes = ["A", "B"], mass = 0.9}]
+[gravity]
+acceleration = [0.7, -1.1, -9.5]
+[[forces]]
+kind = "offload"
+nodes = ["B"]
+length = 1.9
+[[forces]]
+kind = "bending"
+nodes = ["O", "A", "B"]
+stiffness = 23
+damping = 1.7
+)");
+  VectorXd q(9), v(9);
+  q << 0.5, 0, 0, 1.9, 0.2, 1.1, 3.4, 0.9, 0.6;
+  v << 0, 0, 0, 0.4, -0.3, 0.2, 0.9, 0.1, -0.7;
+  VectorXd own = VectorXd::Zero(9), of_twin = own;
+  model->system.add_applied_force(0, q, v, 1.0, own);
+  System(rigid_twin(model->structure, q), false).add_applied_force(0, q, v, 1.0, of_twin);
+  CHECK((own - of_twin).norm() < 1e-13 * own.norm());  // round-off of some ten sums
+}
+
 }  // namespace rigid_twin_test
