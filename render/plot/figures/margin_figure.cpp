@@ -91,7 +91,8 @@ Figure margin_figure(const Margin& margin, const std::string& title) {
   const bool any = shown(still) || shown(moving);
   std::string high;  // what is above the panel everywhere
   if (any && !shown(still)) high = "static";
-  if (any && !shown(moving)) high = "dynamic";
+  const bool sets_out = shown(moving) || !(margin.dynamic_min <= most_margin);
+  if (any && !shown(moving) && margin.dynamic_min > most_margin) high = "dynamic";
   for (Curve* curve : {&still, &moving})
     if (shown(*curve)) margins.curves.push_back(std::move(*curve));
   margins.lines.push_back({0.0, true, "", zero_line});
@@ -110,7 +111,10 @@ Figure margin_figure(const Margin& margin, const std::string& title) {
   figure.caption = "Least static margin " + words(margin.worst.margin) + " at " +
                    place(margin.worst.fold_angle, margin.worst.s) + ", least dynamic margin " +
                    words(margin.dynamic_min) + "; " + told_end(margin, place(last.fold_angle, last.s)) + ".";
-  if (!any) figure.caption += " No margin is as low as 20, and none is drawn.";
+  if (!sets_out) figure.caption += " The motion does not set out, and no dynamic margin is drawn.";
+  if (!any)
+    figure.caption += sets_out ? " No margin is as low as 20, and none is drawn."
+                               : " No static margin is as low as 20, and none is drawn.";
   if (!high.empty()) figure.caption += " No " + high + " margin is as low as 20, and none is drawn.";
   for (const MarginSource& source : margin.sources)
     if (source.factor != 1.0)

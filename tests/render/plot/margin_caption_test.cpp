@@ -61,6 +61,25 @@ TEST_CASE("where no margin can be drawn there is no axis of margins", "[figure]"
   }
 }
 
+TEST_CASE("a motion that does not set out has no dynamic margin to draw and none that is too high",
+          "[figure]") {
+  for (const double least : {0.7, 40.0}) {
+    Margin margin;
+    margin.sources = {{"loads", "load"}};
+    margin.points = {{0.0, 1.2, VectorXd::Constant(1, 2.0), least + 1},
+                     {0.5, 0.6, VectorXd::Constant(1, 3.0), least}};
+    margin.worst = margin.points[1];
+    margin.motion = {{0.0, 0.0, 1.2, 0.0, 0.0, 0.0}};
+    margin.dynamic_min = -0.1;
+    margin.end = MarginEnd::stalls;
+    const std::string caption = margin_figure(margin, "a scene").caption;
+    CHECK_THAT(caption, Catch::Contains(" The motion does not set out, and no dynamic margin is drawn."));
+    CHECK(caption.find("No dynamic margin is as low") == std::string::npos);
+    CHECK(caption.find("No margin is as low") == std::string::npos);
+    CHECK((caption.find(" No static margin is as low as 20") != std::string::npos) == (least > 20));
+  }
+}
+
 TEST_CASE("the legend of margins names what is drawn", "[figure]") {
   for (const bool high : {false, true}) {
     Margin margin;
