@@ -12,8 +12,8 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 
-// (1 - c) / (1 + c) and its derivatives by (d_1, d_2); 1 - c from |t_1 - t_2|^2 / 2, which keeps its digits
-// where straight.
+// (1 - c) / (1 + c) and its derivatives by (d_1, d_2). From s = t_2 - t_1, which keeps its digits where
+// straight: 1 - c = |s|^2 / 2, t_2 - c t_1 = s - t_1 (t_1 . s), of which rounding leaves nothing along t_1.
 struct Bend {
   double value;
   Vec6 gradient;
@@ -23,10 +23,11 @@ struct Bend {
   Bend(const Vec3& d1, const Vec3& d2)
       : t1(d1.normalized()), t2(d2.normalized()), l1(d1.norm()), l2(d2.norm()) {
     c = t1.dot(t2);
-    g1 = (t2 - c * t1) / l1;
-    g2 = (t1 - c * t2) / l2;
+    const Vec3 s = t2 - t1;
+    g1 = (s - t1.dot(s) * t1) / l1;
+    g2 = (t2.dot(s) * t2 - s) / l2;
     const double q = 1 + c;
-    value = 0.5 * (t1 - t2).squaredNorm() / q;
+    value = 0.5 * s.squaredNorm() / q;
     slope = -2 / (q * q);
     curve = 4 / (q * q * q);
     gradient << slope * g1, slope * g2;

@@ -130,7 +130,7 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
     if (steered_iterations(state, report)) return;
     if ((stiff_ || is_stiff()) && stiff_iterations(state, report)) return;
   }
-  if (!small_ || eq_.at_ends) return;
+  if (!(small_ || stiff_) || eq_.at_ends) return;
   predict(state, h);
   eq_.take_rods_as_unknowns(true);
   report.status = newton_.solve(eq_, wanted, accepted, false, report);

@@ -262,7 +262,9 @@ StepStatus FullNewton::solve(StageEquations& eq, double wanted, double accepted,
       best = level;
       without_gain = 0;
     } else if (++without_gain >= 3) {
-      return level <= accepted ? StepStatus::converged : StepStatus::stalled;
+      if (level <= accepted) return StepStatus::converged;
+      if (keep || !eq.look_at_turned_forces()) return StepStatus::stalled;
+      without_gain = 0;
     }
     if (it == max_iterations) break;
     ++report.newton_iterations;

@@ -41,7 +41,7 @@ void StageEquations::start(double time, const ConstVec& z, const ConstVec& w, do
   t = time;
   const bool same_step = h == step;
   h = step;
-  step_sizes_known_ = false;
+  step_sizes_known_ = turned_known_ = false;
   z0 = z;
   multiply<1>(system.mass(), w.data(), p0.data());
   start_size_ = largest_magnitude(p0.data(), p0.size());
@@ -85,6 +85,17 @@ void StageEquations::look_at_forces(const VectorXd& q) {
   if (rods.as_unknowns) system.force_derivatives(t, q, v_tau_, rods.tension.col(0), by_z_, by_w_);
   stiffness_ = largest_of_moving(by_z_, m);
   damping_ = largest_of_moving(by_w_, m);
+}
+
+bool StageEquations::look_at_turned_forces() {
+  if (system.constant_forces() || !step_sizes_known_ || turned_known_) return false;
+  turned_known_ = true;
+  SparseRows by_z, by_w;
+  force_derivatives(c.tau.size() - 1, by_z, by_w);
+  rows_.restart(step_sizes_);
+  rows_.add_stiffness(by_z, h);
+  step_sizes_ = rows_.size();
+  return true;
 }
 
 double StageEquations::h_omega() const {

@@ -50,7 +50,10 @@ class StageEquations {
   // Looks at the derivatives of the forces at the step's start: what they make of round-off, and how stiff
   // they are for the step (allocates).
   void look_at_forces() { look_at_forces(q_0_); }
-  void look_at_forces(const VectorXd& q);                 // the same in this pose, at the start's velocity
+  void look_at_forces(const VectorXd& q);  // the same in this pose, at the start's velocity
+  // Counts what rounding makes of the forces at the present end, too: stiff ones turn with their rods. False:
+  // that is known, or there is nothing to count.
+  bool look_at_turned_forces();
   const SparseRows& force_by_z() const { return by_z_; }  // dF/dz where they were looked at last
   const SparseRows& force_by_w() const { return by_w_; }  // dF/dz'
   // Forgets the forces: they are looked at before the next step.
@@ -139,7 +142,7 @@ class StageEquations {
   VectorXd dX_j_, phi_j_;
   VectorXd step_sizes_;       // of row_noise.hpp: what the step's start and constant forces give
   VectorXd forces_, motion_;  // largest magnitudes over the nodes
-  bool step_sizes_known_ = false;
+  bool step_sizes_known_ = false, turned_known_ = false;
   double momentum_level_ = 0, constraint_level_ = 0;
   // Largest magnitudes: forces, coordinates, M dX, momentum; whether all residuals are finite.
   double force_scale_ = 0, reach_ = 0, inertia_size_ = 0, momentum_size_ = 0;

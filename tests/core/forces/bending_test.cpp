@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rods that bend, against the elastica.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -8,6 +9,7 @@
 #include "core/simulate/initial_state.hpp"
 #include "core/structure/node_positions.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -103,6 +105,37 @@ TEST_CASE("bending: a cantilever of k segments is the elastica, to the second or
                       << off[2][i]);
       CHECK(std::abs(fine) <= std::abs(coarse) / 5);
       CHECK(std::abs(fine) <= 1e-4);
+    }
+  }
+}
+
+// Two rods, the second turned by a from the first, F = 2 E I / l tan(a/2) / cos^2(a/2) / l_i across each:
+// what rounding leaves along a rod would be of the size of E I eps / l^2.
+TEST_CASE("bending: the force of a rod that is hardly bent has nothing along the rod") {
+  const double l1 = 0.0833, l2 = 0.0711, stiffness = 8.4e4;
+  for (const Vec3& t : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0.48, 0.6, -0.64)}) {
+    const Vec3 across = t.unitOrthogonal();
+    for (const double a : {1e-3, 1e-6, 1e-9}) {
+      const Vec3 turned = std::cos(a) * t + std::sin(a) * across,
+                 from = std::cos(a) * across - std::sin(a) * t;
+      const auto model = model_of(
+          "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], mass = 1}, {name = 'B', "
+          "position = [1, 0, 0], mass = 1}, {name = 'C', position = [2, 0, 0], mass = 1}]\n[[forces]]\nkind "
+          "= "
+          "'bending'\nnodes = ['A', 'B', 'C']\nstiffness = " +
+          number(stiffness) + "\n");
+      VectorXd q(9), f = VectorXd::Zero(9);
+      q << Vec3::Zero(), l1 * t, l1 * t + l2 * turned;
+      model->system.add_applied_force(0, q, VectorXd::Zero(9), 1.0, f);
+      const double moment =
+          2 * stiffness * std::tan(a / 2) / std::pow(std::cos(a / 2), 2);  // mean length 1 m
+      INFO(t.transpose() << ", " << a);
+      // Turned by a, C is known to the rounding of B and C beside each other: eps l / l2 of a radian.
+      const double known = moment * (1e-15 / a + 1e-14);
+      CHECK((f.head<3>() + moment / l1 * across).norm() <= known / l1);
+      CHECK((f.tail<3>() + moment / l2 * from).norm() <= known / l2);
+      CHECK(std::abs(f.head<3>().dot(t)) <= 1e-15 * (moment / l1));
+      CHECK(std::abs(f.tail<3>().dot((q.tail<3>() - q.segment<3>(3)).normalized())) <= 1e-15 * (moment / l2));
     }
   }
 }
