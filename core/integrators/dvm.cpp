@@ -6,8 +6,23 @@
 
 #include "core/forces/elastic_rods.hpp"
 #include "core/integrators/dvm_method.hpp"
+#include "core/math/coupled_columns.hpp"
 
 namespace unfurl {
+
+// In each part that rods and constraints do not join with others, which does what it does alone. Counted are
+// coordinates that constraints may hold: a net on a ring of few units makes none of its modes weaker.
+bool Dvm::is_small(const System& system, int stages) {
+  const SparseRows& G = system.jacobian_pattern();
+  CoupledColumns parts(G.cols());
+  parts.join_rows_of(system.mass());
+  parts.join_rows_of(G);
+  VectorXd columns = VectorXd::Zero(G.cols()), rows = columns;
+  for (Index i = 0; i < G.cols(); ++i) ++columns[parts.set_of(i)];
+  for (int r = 0; r < G.outerSize(); ++r)
+    if (const SparseRows::InnerIterator it(G, r); it) ++rows[parts.set_of(it.col())];
+  return ((columns.cwiseMin(2 * rows) + rows).array() * (stages - 1) <= full_newton_unknowns).all();
+}
 
 void Dvm::analyse_mass() {
   const SparseRows& M = system_.mass();

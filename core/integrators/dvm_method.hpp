@@ -26,9 +26,9 @@ class Dvm final : public Integrator {
         c_(options.nodes, options.stages),
         eq_(system, c_, options.constraints_at == "ends"),
         G_(system.jacobian_pattern()),
+        small_(is_small(system, c_.s)),
         saddle_(system.mass(), G_, std::max(c_.s - 1, 2),
-                is_small(system, c_.s) ? SaddleSolver::standard_regularisation
-                                       : 0.02 * SaddleSolver::standard_regularisation,
+                small_ ? SaddleSolver::standard_regularisation : 0.02 * SaddleSolver::standard_regularisation,
                 SaddleSolver::Order::sparse_first) {
     const Index n = system.solved_coordinates(), m = system.constraints();
     rhs_f_.assign(static_cast<std::size_t>(n * (c_.s - 1)), 0.0);
@@ -44,7 +44,6 @@ class Dvm final : public Integrator {
     halfway_ = c_.basis.values(0.5);
     slopes_ = c_.basis.derivative_matrix();
     if (eq_.at_ends) analyse_mass();
-    small_ = is_small(system, c_.s);
     steerable_ = !eq_.at_ends && !system.constant_forces() && !system.elastic_rods() &&
                  system.solved_coordinates() * (c_.s - 1) > few_unknowns;
     if (!small_) left_constraint_ = 1000.0;
@@ -86,8 +85,8 @@ class Dvm final : public Integrator {
  private:
   // Levels: 1 is round-off. Up to `accepted` a stalled iteration counts as converged.
   static constexpr double wanted = 1.5, wanted_constraint = constraint_level_wanted, accepted = 30.0;
-  // A system with more unknowns than this is not given the full Newton matrix, whose factors grow too fast;
-  // instead its weak modes may keep a larger constraint error. Its regularisation is below the
+  // A system of which a part has more unknowns than this is not given the full Newton matrix, whose factors
+  // grow too fast; instead its weak modes may keep a larger constraint error. Its regularisation is below the
   // sigma^2 of those, 1e-14 in a folded ring of a thousand units, and near round-off in what is redundant.
   static constexpr Index full_newton_unknowns = 2500;
   // With no more than these the full Newton matrix is cheaper than a correction that knows of forces, and
@@ -112,12 +111,7 @@ class Dvm final : public Integrator {
   static constexpr double resolved =
       1.5;  // h omega, from above, per stage but one: the ends tell forces of waves
 
-  // Counted are coordinates that constraints may hold: a net on a ring of few units makes none of its modes
-  // weaker.
-  static bool is_small(const System& system, int stages) {
-    const Index m = system.constraints();
-    return (std::min(system.solved_coordinates(), 2 * m) + m) * (stages - 1) <= full_newton_unknowns;
-  }
+  static bool is_small(const System& system, int stages);
 
   void analyse_mass();
   void set_matrices(double h);
@@ -151,6 +145,7 @@ class Dvm final : public Integrator {
   GalerkinCoefficients c_;
   StageEquations eq_;
   SparseRows G_;
+  bool small_ = true;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
   SparseLdlt mass_factor_;  // ends variant only
@@ -168,7 +163,6 @@ class Dvm final : public Integrator {
   double left_constraint_ = 8.0;  // level of constraint error that weak modes may keep
   bool careful_ = false;
   bool feed_ = true;
-  bool small_ = true;
   bool slow_ = false;  // the last step took many iterations
   Settling settling_;
   bool stiff_ = false;  // forces are too stiff at this step for an iteration that knows nothing of them
