@@ -135,7 +135,7 @@ bool Dvm::tight_iterations(const State& state, StepReport& report) {
 void Dvm::iterate(const State& state, double h, StepReport& report) {
   if (!stiff_) {
     if (frozen_iterations(report)) return;
-    if (!slow_) {
+    if (!slow_ && !eq_.at_ends) {
       predict(state, h);  // once more
       freeze_in_the_middle(report);
       if (frozen_iterations(report)) return;
@@ -145,7 +145,7 @@ void Dvm::iterate(const State& state, double h, StepReport& report) {
     if (steered_iterations(state, report)) return;
     if ((stiff_ || is_stiff()) && stiff_iterations(state, report)) return;
   }
-  if (!(small_ || stiff_) || eq_.at_ends) return;
+  if (!(small_ || stiff_)) return;
   predict(state, h);
   eq_.take_rods_as_unknowns(true);
   report.status = newton_.solve(eq_, wanted, accepted, false, report);
@@ -310,10 +310,7 @@ void Dvm::correct_stages() {
       [n, f, r = eq_.momentum.data(), T = momentum_to_f_.data()](auto lanes) { mix<lanes()>(r, n, T, f); });
   with_wide<K>([m, g, phi = eq_.phi.data(), this](auto lanes) {
     using Row = Lanes<lanes()>;
-    for (Index r = 0; r < m; ++r) {
-      const double noise = tight_ ? 0.0 : feed_ ? wanted_constraint * eq_.constraint_noise(r) : infinity;
-      beyond(Row::all(0.0) - Row(phi + r * K), noise).store(g + r * K);
-    }
+    for (Index r = 0; r < m; ++r) beyond(Row::all(0.0) - Row(phi + r * K), left_alone(r)).store(g + r * K);
   });
   if (careful_) std::copy(rhs_f_.begin(), rhs_f_.end(), consistent_f_.data());
   if (careful_) {
@@ -334,13 +331,20 @@ void Dvm::correct_stages() {
 }
 
 // One multiplier: Y_j = (C^-1)_j1 / (C^-1)_s1 y with y that of the last node; the other nodes follow from M
-// alone.
+// alone. What no motion reaches of Phi is left out from the first iteration on: on the way there dependent
+// rows contradict each other by the square of the correction, and the multipliers of that would hide what
+// else is left.
 void Dvm::correct_at_ends(StepReport& report) {
   const Index last = c_.s - 2, n = eq_.dX.rows();
   const double h = eq_.h;
   Eigen::Map<VectorXd> f(rhs_f_.data(), n), y(rhs_g_.data(), eq_.lambda.rows());
-  f.noalias() = -h * (eq_.momentum * c_.C_inverse.row(last).transpose());
-  y = -eq_.phi.col(last);
+  const auto push = [&] { f.noalias() = -h * (eq_.momentum * c_.C_inverse.row(last).transpose()); };
+  push();
+  for (Index r = 0; r < y.size(); ++r)
+    y[r] = std::abs(eq_.phi(r, last)) > left_alone(r) ? -eq_.phi(r, last) : 0.0;
+  saddle_.apply(rhs_f_.data(), rhs_g_.data(), 1);
+  y.noalias() = G_ * f;
+  push();
   saddle_.apply(rhs_f_.data(), rhs_g_.data(), 1);
   eq_.dX.col(last) += f;
   pull_.noalias() = G_.transpose() * y;
@@ -350,7 +354,7 @@ void Dvm::correct_at_ends(StepReport& report) {
     mass_factor_.solve(f.data(), 1);
     eq_.dX.col(j) += f;
   }
-  report.right_hand_sides += static_cast<int>(c_.s - 1);
+  report.right_hand_sides += static_cast<int>(c_.s);
   eq_.lambda.col(0) -= y / (0.5 * h * h * c_.C_inverse(last, 0));
 }
 

@@ -60,7 +60,7 @@ class Dvm final : public Integrator {
     if (weak_rows_ < 0) weak_rows_ = saddle_.rows_below(weak_pivot);
     if (stiff_) stiff_ = forces_are_stiff();
     tight_ = !stiff_ && !eq_.at_ends && needs_care();
-    if (slow_ && !tight_ && !stiff_) freeze_in_the_middle(report);
+    if (slow_ && !tight_ && !stiff_ && !eq_.at_ends) freeze_in_the_middle(report);
     if (!(tight_ && tight_iterations(state, report))) iterate(state, h, report);
     slow_ = !tight_ && !stiff_ && report.newton_iterations > (slow_ ? slow_even_so : slow_iterations);
     if (slow_ && steerable_) stiff_ = is_stiff(), slow_ = !stiff_;
@@ -133,6 +133,9 @@ class Dvm final : public Integrator {
   void arrive(State& state);
   template <LaneCount K>
   void accelerate(bool extrapolate);
+  double left_alone(Index r) const {  // of Phi [m]
+    return tight_ ? 0.0 : feed_ ? wanted_constraint * eq_.constraint_noise(r) : infinity;
+  }
   void correct(StepReport& report);
   template <LaneCount K>
   void correct_stages();
