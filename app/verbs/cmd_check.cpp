@@ -92,7 +92,7 @@ NearRods near_rods(const std::shared_ptr<const Model>& model, const Scene& scene
     const std::size_t states = near.why.empty() ? run.trajectory.size() : 1;
     near.least = least_clearance(run.trajectory, states);
     near.until = run.trajectory.time(states - 1);
-    if (run.status == RunStatus::failed) near.why = "the solver fails there";
+    if (run.status == RunStatus::failed) near.why = "the solver fails there: " + run.message;
   } catch (const Error& error) {
     near.why = error.what();
   }

@@ -134,7 +134,11 @@ Impacts strike_stops(const OneSided& sides, const std::vector<std::size_t>& side
   return Blows(sides, sides_of, crossed, responses, D, rests, state).run();
 }
 
-std::string what_pushes(const StopSide& at, const System& system, bool movable) {
+std::string what_pushes(const OneSided& sides, std::size_t i, double t, const System& system, bool movable) {
+  const StopSide& at = sides.stops()[i];
+  const LimitMotion limit = sides.limit_motion(i, t);
+  if (at.reeled && (limit.rate < 0 || (limit.rate == 0 && limit.acceleration < 0)))
+    return "the cable " + at.name + " is drawn in further than what it runs along gives way";
   const VectorXd mass = system.mass().diagonal();
   const bool unlike = movable && mass.maxCoeff() > 1e8 * mass.minCoeff();
   return (at.reeled ? "a drive pulls at the cable "

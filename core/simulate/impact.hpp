@@ -27,7 +27,7 @@ Impacts strike_stops(const OneSided& sides, const std::vector<std::size_t>& side
                      const std::vector<bool>& crossed, const PushResponses& responses, const MatrixXd& D,
                      const std::function<bool(std::size_t, double)>& rests, State& state);
 
-// "a drive pushes against the stop NAME": of a stop whose impact has no answer.
-std::string what_pushes(const StopSide& at, const System& system, bool movable);
+// "a drive pushes against the stop NAME": of stop i whose impact at t has no answer.
+std::string what_pushes(const OneSided& sides, std::size_t i, double t, const System& system, bool movable);
 
 }  // namespace unfurl

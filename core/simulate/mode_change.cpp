@@ -111,7 +111,7 @@ class Change {
     return std::move(out_);
   }
   bool fail_at(Index row) {
-    return out_.failure = what_pushes(sides_.stops()[side(row)], system_, movable(row)), false;
+    return out_.failure = what_pushes(sides_, side(row), out_.state.t + later_, system_, movable(row)), false;
   }
   void tell(std::size_t i) {
     if (std::ranges::find(out_.turned, i) == out_.turned.end()) out_.turned.push_back(i);

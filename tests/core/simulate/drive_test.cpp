@@ -104,6 +104,34 @@ end_time = 0.4
   }
 }
 
+// From A over B to C there are 1 + sqrt(5) / 2 = 2.1180 m, which two rods keep: as built, or taken in by then
+// with 2.15 m, 0.1 m/s and half a ramp of 0.1 s.
+TEST_CASE("a cable that is drawn in along what keeps its length says so") {
+  for (const auto& [length, end] :
+       {std::pair{"", 0.0}, {"length = 2.15", 0.05 + (1.15 - std::sqrt(1.25)) / 0.1}}) {
+    const Simulation run = run_scene(std::string(R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0]},
+         {name = "C", position = [1.5, 1, 0]}]
+rods = [{nodes = ["A", "B"], mass = 1}, {nodes = ["B", "C"], mass = 1}]
+[solver]
+end_time = 1
+[[constraints]]
+kind = "cable"
+name = "rope"
+nodes = ["A", "B", "C"]
+motion = "rate"
+rate = -0.1
+ramp = 0.1
+)") + length);
+    REQUIRE(run.status == RunStatus::failed);
+    INFO(run.message);
+    CHECK(run.message.find("the cable rope is drawn in further than what it runs along gives way") !=
+          std::string::npos);
+    CHECK(run.trajectory.end_time() == Approx(end).margin(1e-9));
+  }
+}
+
 // 2 kg on a line, a rod of 1.5 kg on it and on a slider beside: from rest to 0.3 m/s, whatever a ramp does
 // that no step tells from none. Imposed: round-off of some metres. What begins within 1e-9 of a step of t = 0
 // begins there. The drive's work is that of the jump, of a ramp of 6 ns to the rounding of places in 6 ns.
