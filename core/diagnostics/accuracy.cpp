@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <sstream>
@@ -383,6 +384,31 @@ std::string words_of_interruption(const Diagnostics& d) {
   return text.str();
 }
 
+double seconds_behind(const std::string& words, const std::string& text) {
+  const std::size_t at = text.find(words);
+  return at == std::string::npos ? std::nan("") : std::strtod(text.c_str() + at + words.size(), nullptr);
+}
+
+// Of a cable that swings unresolved, once: the swing of what it holds tells more than that the step does not
+// resolve the motion towards it, and where it is the fastest swing on springs at the start, that was told.
+void leave_out_repeated_swings(std::vector<std::string>& warnings) {
+  constexpr double same = 0.05;  // period: of the cable alone, and of all that swings with it
+  const std::string holds = " holds swings on it in ";
+  double at_start = std::nan("");
+  for (const std::string& w : warnings)
+    if (w.find("fastest swing on springs, ") != w.npos)
+      at_start = seconds_behind("fastest swing on springs, ", w);
+  const std::vector<std::string> told = warnings;
+  for (const std::string& swing : told) {
+    const std::size_t end = swing.find(holds);
+    if (end == swing.npos || !swing.starts_with("what ")) continue;
+    const std::string towards = " does not resolve the motion towards " + swing.substr(5, end - 5) + ",";
+    const bool known = std::abs(seconds_behind(holds, swing) - at_start) <= same * at_start;
+    std::erase_if(warnings,
+                  [&](const std::string& w) { return w.find(towards) != w.npos || (known && w == swing); });
+  }
+}
+
 }  // namespace
 
 std::string mistrust(const Simulation& run, const Diagnostics& d) {
@@ -391,6 +417,7 @@ std::string mistrust(const Simulation& run, const Diagnostics& d) {
 
 std::vector<std::string> warnings_of(const Simulation& run, const Diagnostics& d) {
   std::vector<std::string> all = run.warnings;
+  leave_out_repeated_swings(all);
   if (!d.t.empty()) std::ranges::move(accuracy_warnings(run, d), std::back_inserter(all));
   return all;
 }

@@ -2,7 +2,10 @@
 // Steps that do not resolve a swing: which are warned of, and by what numbers.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
+#include <utility>
 
+#include "core/diagnostics/accuracy.hpp"
 #include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/study/table.hpp"
@@ -77,6 +80,40 @@ TEST_CASE("steps that are too long for what swings on a cable are told, with the
     CHECK(number_behind(text, "swings on it in ") == Approx(period).epsilon(6e-3));
     CHECK(number_behind(text, "which the step of ") == Approx(1.03 * followed).epsilon(6e-3));
     CHECK(number_behind(text, "solver.step = ") == Approx(followed).epsilon(6e-3));
+  }
+}
+
+// That the step does not resolve the motion towards the cable is what follows from it; taut at the start it
+// is what swings fastest then.
+TEST_CASE("one swing on a cable is told once") {
+  const std::string scene = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0]},
+         {name = "P", position = [0, 1, 0], fixed = true}]
+rods = [{nodes = ["A", "B"], mass = 0.1}]
+[[forces]]
+kind = "cable"
+name = "rope"
+nodes = ["P", "B"]
+axial_stiffness = 1e6
+[gravity]
+acceleration = [0, -9.81, 0]
+[solver]
+step = 0.01
+end_time = 0.5
+)";
+  for (const auto& [length, about] :
+       {std::pair{"1.41", "the fastest swing on springs, "}, {"1.5", "what rope holds swings on it in "}}) {
+    const Simulation run = run_scene(scene, {"forces[rope].length=" + std::string(length)});
+    REQUIRE(run.status == RunStatus::completed);
+    int told_of_it = 0;
+    for (const std::string& w : warnings_of(run, diagnose(run)))
+      if (w.find("does not resolve") != w.npos) {
+        CHECK(w.find(about) != w.npos);
+        ++told_of_it;
+      }
+    CHECK(told_of_it == 1);
   }
 }
 
