@@ -187,7 +187,7 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
       if (!touches && !(is_below && a[i] > left)) continue;
       double t = touches ? end : zero_of(motion, i, t0, end);
       if (t - from <= now * step_) t = from;  // rounding puts it there
-      const double tie = i == deployed ? at_once * step_ : 0;
+      const double tie = i == deployed && !stands_before(motion, first, t) ? at_once * step_ : 0;
       if (t < first.first + tie || first.second < 0) first = {t, static_cast<int>(i)};
     }
     if (first.second >= 0) break;
@@ -203,6 +203,14 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
       first = {to, static_cast<int>(deployed)};
   }
   return first;
+}
+
+bool PathWatch::stands_before(const PathMotion& motion, const std::pair<double, int>& met, double t) const {
+  const Index i = met.second;
+  if (i < 0 || i >= static_cast<Index>(sides_.stops().size())) return false;
+  VectorXd at_stop, rates;
+  margins(motion, met.first, at_stop, rates);
+  return at_stop[at_stop.size() - 1] > rounded_ && margin(motion, t, i) < -1;
 }
 
 double PathWatch::least_between(const PathMotion& motion, Index i, double a, double b) const {

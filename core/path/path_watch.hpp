@@ -52,6 +52,8 @@ class PathWatch {
   double least_between(const PathMotion& motion, Index i, double a, double b) const;
   // Whether stop i is touched at t by what is at rest, and pressed against it.
   bool pressed(const PathMotion& motion, double t, double to, Index i, double margin) const;
+  // Whether the stop that is met first stands before the deployed pose, told at t, by more than rounding.
+  bool stands_before(const PathMotion& motion, const std::pair<double, int>& met, double t) const;
   std::vector<double> looked_at(const PathMotion& motion, double from, double to) const;
   double zero_of(const PathMotion& motion, Index i, double a, double b) const;
 
