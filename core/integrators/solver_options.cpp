@@ -52,10 +52,10 @@ const ParamBinding<O>& keys() {
                      "steps follow the motion, time-symmetrically and none larger than `step`; a symplectic "
                      "method is then symmetric only"),
        &O::adaptive},
-      {only_with(
-           "adaptive", {"true"},
-           positive_param("turn", "rad", 0,
-                          "with `adaptive`: about how far a rod may turn, or velocities change, in a step")),
+      {only_with("adaptive", {"true"},
+                 positive_param("turn", "rad", 0,
+                                "with `adaptive`: about how far a rod may turn, a swing on a spring go on, "
+                                "or velocities change, in a step")),
        &O::turn},
       {real_param("tolerance", "m", 0, 0.0, 1e6,
                   "of node positions; stages and step are picked for it; 0: they are as given"),

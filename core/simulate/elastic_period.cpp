@@ -23,10 +23,12 @@ constexpr double settled_share = 1e-3;   // of w^2, what is left of the fastest 
 constexpr double known_share = 0.05;     // the same of the others that count
 constexpr double followed_share = 0.25;  // of a period: steps up to that follow it
 
+bool bends(const Structure& structure) {
+  return std::ranges::any_of(structure.forces, [](const Force& f) { return f.kind == "bending"; });
+}
+
 bool has_waves(const Structure& structure) {
-  return std::any_of(structure.rods.begin(), structure.rods.end(), [](const Rod& r) { return r.gives; }) ||
-         std::any_of(structure.forces.begin(), structure.forces.end(),
-                     [](const Force& f) { return f.kind == "bending"; });
+  return std::ranges::any_of(structure.rods, [](const Rod& r) { return r.gives; }) || bends(structure);
 }
 
 // Those that are slack at a pose have no stiffness there.
@@ -191,7 +193,8 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
   if (!method || method->claims(options).damps) return {};
   const FastestPeriods periods = fastest_periods(model, start);
   const double period = periods.of_rods;
-  const std::string springs = spring_step_warning(periods.on_springs, options);
+  const bool followed = options.adaptive && !bends(model.structure);  // by StepControl
+  const std::string springs = followed ? "" : spring_step_warning(periods.on_springs, options);
   if (!(options.step > followed_share * period)) return springs;
   std::ostringstream text;
   text.precision(3);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constraints/linear_rows.hpp"
+
 namespace unfurl {
 namespace {
 
@@ -19,11 +21,45 @@ StepControl::StepControl(const Structure& structure, const System& system, const
       index1_(system_),
       largest_(options.step),
       turn_(options.turn),
+      length_(reference_length(structure)),
+      bends_(std::ranges::any_of(structure.forces, [](const Force& f) { return f.kind == "bending"; })),
       acceleration_(system.solved_coordinates()),
       lambda_(system.constraints()),
       q_(system.coordinates()),
       v_(system.coordinates()),
-      a_(system.coordinates()) {}
+      a_(system.coordinates()),
+      f_(system.coordinates()) {}
+
+// w . K w over w . M w for x = w or h_0 w', whichever way the energy is, of forces that vary with the pose,
+// damped by as much of them as varies with rates; rods that give are left to methods that stop their waves.
+double StepControl::swing(const State& state) {
+  constexpr double small = 1e-6;  // of a length, of a rate: rounding leaves 1e-10 of a stretch
+  if (system_.constant_forces() || bends_) return 0;
+  const VectorXd still = VectorXd::Zero(system_.elastic_rods() ? std::ssize(system_.giving_rods()) : 0);
+  const auto add = [&](const VectorXd& q, const VectorXd& v, double scale) {
+    if (system_.elastic_rods())
+      system_.add_other_force(state.t, q, v, still, scale, f_);
+    else
+      system_.add_applied_force(state.t, q, v, scale, f_);
+  };
+  double stiffness = 0, damping = 0, mass = 0;
+  const auto look_along = [&](const VectorXd& x, const VectorXd& w, double weight) {
+    const double size = x.lpNorm<Eigen::Infinity>();
+    if (!(size > 0)) return;
+    const double d = small * length_ / size;
+    f_.setZero();
+    add(q_ + d * x, v_, -1), add(q_ - d * x, v_, 1);
+    stiffness += weight * x.dot(f_) / (2 * d);
+    f_.setZero();
+    add(q_, v_ + x, -1), add(q_, v_ - x, 1);
+    damping += weight * x.dot(f_) / 2;
+    mass += weight * 2 * system_.kinetic_energy(w);
+  };
+  look_along(v_, state.w, 1);
+  look_along(a_, acceleration_, largest_ * largest_);
+  const double square = stiffness / mass - std::pow(0.5 * damping / mass, 2);
+  return square > 0 ? std::sqrt(square) : 0.0;
+}
 
 double StepControl::density(const State& state) {
   system_.follow(state);
@@ -44,6 +80,7 @@ double StepControl::density(const State& state) {
     omega = std::max(omega, 0.5 * (rate + std::sqrt(rate * rate + 2 * bend * turn_)));
   }
   if (known_) {
+    omega = std::max(omega, swing(state));
     const double r0 = turn_ / largest_;
     const double w = std::sqrt(2 * system_.kinetic_energy(state.w));
     const double a = std::sqrt(2 * system_.kinetic_energy(acceleration_));

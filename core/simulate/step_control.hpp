@@ -13,7 +13,9 @@ namespace unfurl {
 
 // Rates [1/s] at which a motion turns and changes: over the rods of `structure` the largest omega, with which
 // v h + b h^2 / 2 = alpha for h = alpha / omega, v = |v_b - v_a| / l and b = |e x (a_b - a_a)| / l of a rod
-// along e; and r = |w'| / (|w| + |w'| / r_0) in the mass norm, which a motion from rest keeps below r_0.
+// along e, and the frequency of what the motion stretches, (w . K w / w . M w)^1/2 of forces F(z), K = -dF/dz
+// (of w' h_0 as well, where it is at rest); and r = |w'| / (|w| + |w'| / r_0) in the mass norm, which a
+// motion from rest keeps below r_0.
 //
 //     Q(z, w) = sqrt(1 + (h_0 (omega + r) / alpha)^2),     h_{n-1/2} h_{n+1/2} = (h_0 / Q(z_n, w_n))^2
 //
@@ -34,15 +36,17 @@ class StepControl {
 
  private:
   double density(const State& state);  // Q
+  double swing(const State& state);    // at rates and accelerations in v_, a_ [1/s]
   double start(const State& state);
 
   const Structure& structure_;
   System system_;  // follows the states
   Index1 index1_;
-  double largest_, turn_;
+  double largest_, turn_, length_;
+  bool bends_;
   double previous_ = 0;  // the last step [s]; 0 before the first
   bool known_ = false;   // acceleration_ is that of the last state asked for
-  VectorXd acceleration_, lambda_, q_, v_, a_;
+  VectorXd acceleration_, lambda_, q_, v_, a_, f_;
 };
 
 }  // namespace unfurl

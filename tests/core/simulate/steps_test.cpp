@@ -2,6 +2,8 @@
 // Where steps end, how long they are, and the polynomials through their ends.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "core/diagnostics/quintic.hpp"
 #include "core/scene/build.hpp"
@@ -11,7 +13,9 @@
 #include "core/simulate/simulation.hpp"
 #include "core/simulate/step_control.hpp"
 #include "core/simulate/time_grid.hpp"
+#include "core/study/table.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 using namespace unfurl::testing;
@@ -203,6 +207,51 @@ TEST_CASE("adaptive steps follow the motion from the start on") {
     CHECK(turned <= 2 * c.turn);
     CHECK(alternate <= 2);  // from rest
   }
+}
+
+// 1 kg on 1e6 N/m, with nothing that turns: x = 1 + cos(1000 t) / 10 in steps of about alpha / omega, of
+// order 4 in alpha; its energy, were it 1e-12 of that of what falls beside, is worth no shorter steps, nor is
+// a damper's (c = 4 (k m)^1/2) that lets nothing swing.
+TEST_CASE("adaptive steps follow a swing on a spring") {
+  const auto run = [](double amplitude, double damping, double turn) {
+    return run_scene(R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1, 0, 0], mass = 1},
+         {name = "B", position = [0, 1, 0], mass = 1, velocity = [0, 0, 1]}]
+[[constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [1, 0, 0]
+[[constraints]]
+kind = "line"
+nodes = ["B"]
+direction = [0, 0, 1]
+[[forces]]
+kind = "spring"
+nodes = ["O", "A"]
+stiffness = 1e6
+free_length = 1
+[solver]
+adaptive = true
+step = 0.01
+end_time = 0.1
+)",
+                     {"structure.nodes[1].position=[" + exact_number(1 + amplitude) + ",0,0]",
+                      "forces[0].damping=" + exact_number(damping), "solver.turn=" + exact_number(turn)});
+  };
+  double before = 0;
+  for (const double turn : {0.2, 0.1}) {
+    const Simulation swings = run(0.1, 0, turn);
+    REQUIRE(swings.status == RunStatus::completed);
+    CHECK(swings.warnings.empty());
+    CHECK(static_cast<double>(swings.steps) == Approx(0.1 * 1000 / turn).epsilon(0.1));
+    const double off =
+        std::abs(end_positions(swings)[3] - (1 + 0.1 * std::cos(1000 * swings.trajectory.end_time())));
+    if (before > 0) CHECK(std::log2(before / off) == Approx(4).margin(0.3));
+    before = off;
+  }
+  CHECK(run(1e-9, 0, 0.1).steps <= 20);
+  CHECK(run(0.1, 4000, 0.1).steps <= 100);
 }
 
 TEST_CASE("the cubic and the quintic through two states reproduce polynomials") {
