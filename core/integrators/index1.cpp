@@ -23,7 +23,6 @@ Index1::Index1(const System& system, bool clean_multipliers)
               clean_multipliers ? clean_regularisation : SaddleSolver::standard_regularisation,
               SaddleSolver::Order::sparse_first),
       clean_(clean_multipliers),
-      refinements_(clean_multipliers ? 40 : 8),
       weak_(clean_multipliers ? 3 * clean_regularisation : 100 * SaddleSolver::standard_regularisation),
       q_(system.coordinates()),
       v_(system.coordinates()),
@@ -59,8 +58,10 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   return assemble(t, z, w, tension) && solve(t, w, acceleration, lambda);
 }
 
-bool Index1::evaluate_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
-                         const VectorXd& tension) {
+// The matrix at z and the right-hand sides for rates that the constraints have there. acceleration and lambda
+// are worked with.
+bool Index1::move_rates_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
+                           const VectorXd& tension) {
   if (!assemble(t, z, w, tension)) return false;
   VectorXd rate(lambda.size());
   system_.target_rate(t, rate);
@@ -68,7 +69,24 @@ bool Index1::evaluate_on(double t, const ConstVec& z, VectorXd& w, MutVec accele
   settle(VectorXd::Zero(w.size()), rate, acceleration, lambda);
   w += acceleration;
   place(t, z, w, tension);
-  return solve(t, w, acceleration, lambda);
+  return true;
+}
+
+bool Index1::evaluate_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
+                         const VectorXd& tension) {
+  return move_rates_on(t, z, w, acceleration, lambda, tension) && solve(t, w, acceleration, lambda);
+}
+
+bool Index1::evaluate_beside(double t, const ConstVec& z, const ConstVec& on, const ConstVec& w,
+                             MutVec acceleration, MutVec lambda) {
+  VectorXd rate = w;
+  if (!move_rates_on(t, on, rate, acceleration, lambda, {})) return false;
+  if (alpha_ > 0) bias_ += G_ * (2 * alpha_ * (rate - w) + alpha_ * alpha_ * (on - z));
+  return solve(t, rate, acceleration, lambda);
+}
+
+double Index1::out_of_reach(double weak) {
+  return weak > 0 && saddle_.weakest_pivot(weak) < weak ? std::numeric_limits<double>::infinity() : left_;
 }
 
 bool Index1::evaluate(const State& state, MutVec acceleration, MutVec lambda) {
@@ -83,7 +101,7 @@ bool Index1::evaluate_at_rest(State state, MutVec acceleration, MutVec lambda) {
 }
 
 bool Index1::solve(double t, const ConstVec& w, MutVec acceleration, MutVec lambda) {
-  saddle_.weakest_pivot(weak_);
+  const bool weak = saddle_.weakest_pivot(weak_) < weak_;
   if (alpha_ > 0) {
     system_.target_rate(t, phi_);
     phi_.noalias() -= G_ * w;
@@ -92,6 +110,7 @@ bool Index1::solve(double t, const ConstVec& w, MutVec acceleration, MutVec lamb
     bias_ -= alpha_ * alpha_ * phi_;
   }
   settle(force_, bias_, acceleration, lambda);
+  if (weak) left_ = std::numeric_limits<float>::infinity();
   return acceleration.allFinite() && lambda.allFinite();
 }
 
@@ -99,10 +118,11 @@ bool Index1::solve(double t, const ConstVec& w, MutVec acceleration, MutVec lamb
 // as it has rows) is one that refinement does not reach. With the small regularisation such a direction is
 // that of a singular pose next by, and all that there is of it is round-off.
 void Index1::settle(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) {
-  const double left = saddle_.solve(f, g, x, y, refinements_);
+  const double left = saddle_.solve(f, g, x, y, refinements());
+  left_ = static_cast<float>(left);
   if (clean_ && left > unsettled && !saddle_.fine() && saddle_.left_a_direction() &&
       saddle_.factorise_finely())
-    saddle_.solve(f, g, x, y, refinements_);
+    saddle_.solve(f, g, x, y, refinements());
 }
 
 const VectorXd& Index1::applied_force(const State& state) {
@@ -232,7 +252,7 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
   lanes_.solve(none, rows, acceleration_, lambda_, -1);
   for (std::size_t k = 0; k < states.size(); ++k)
     if (ok_[k] && !alone[k]) weakness_[k] = lambda_[k].lpNorm<Eigen::Infinity>() / size_;
-  const SaddleLanes::Norms left = lanes_.solve(force_, bias_, acceleration_, lambda_, one_.refinements_);
+  const SaddleLanes::Norms left = lanes_.solve(force_, bias_, acceleration_, lambda_, one_.refinements());
   for (std::size_t k = 0; k < states.size(); ++k) {
     if (ok_[k] && !alone[k] && left[k] > unsettled && lanes_.hand_over(static_cast<int>(k), one_.saddle_)) {
       one_.settle(force_[k], bias_[k], acceleration_[k], lambda_[k]);

@@ -31,8 +31,15 @@ class Index1 {
   // The same where rates are moved first onto those that the constraints have then.
   bool evaluate_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
                    const VectorXd& tension = {});
-  // The same at a state. What rods that give pull with is what the state says, where its step did not resolve
-  // them and their lengths do not tell.
+  // The same for a pose and rates beside the constraints, of which the errors decay as stabilise() says:
+  // `on` is the pose on them that stands for z.
+  bool evaluate_beside(double t, const ConstVec& z, const ConstVec& on, const ConstVec& w,
+                       MutVec acceleration, MutVec lambda);
+  // The share of its right-hand side that the last evaluation has left, out of the rows' reach; infinite
+  // where a direction is hardly in their reach, by a pivot below `weak`.
+  double out_of_reach(double weak);
+  // The same as evaluate() at a state. What rods that give pull with is what the state says, where its step
+  // did not resolve them and their lengths do not tell.
   bool evaluate(const State& state, MutVec acceleration, MutVec lambda);
   // The same at rest in the state's pose, for good: G a = 0, whatever drives and warming do then.
   bool evaluate_at_rest(State state, MutVec acceleration, MutVec lambda);
@@ -53,6 +60,9 @@ class Index1 {
   void place(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension);
   bool assemble(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension = {});
   bool solve(double t, const ConstVec& w, MutVec acceleration, MutVec lambda);
+  bool move_rates_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
+                     const VectorXd& tension);
+  int refinements() const { return clean_ ? 40 : 8; }
   void settle(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y);
   void answer(const VectorXd& rows, VectorXd& x, VectorXd& y);
   void move_rates(State& state, VectorXd& rows, VectorXd& x, VectorXd& y);
@@ -61,7 +71,7 @@ class Index1 {
   std::vector<double> scratch_;
   SaddleSolver saddle_;
   bool clean_;
-  int refinements_;
+  float left_ = 0;
   double weak_;  // pivots below this are solved for in twice the digits
   double alpha_ = 0;
   VectorXd q_, v_, f_, force_, bias_, phi_;

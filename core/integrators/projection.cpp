@@ -16,8 +16,11 @@ constexpr double weak = 100 * SaddleSolver::standard_regularisation;
 
 }  // namespace
 
-Projection::Projection(const System& system)
-    : system_(system), G_(system.jacobian_pattern()), saddle_(system.mass(), G_), rows_(system) {
+Projection::Projection(const System& system, double regularisation)
+    : system_(system),
+      G_(system.jacobian_pattern()),
+      saddle_(system.mass(), G_, 1, regularisation),
+      rows_(system) {
   q_.setZero(system.coordinates());
   for (VectorXd* v : {&phi_, &offset_, &y_}) v->setZero(system.constraints());
   for (VectorXd* v : {&force_, &x_, &move_}) v->setZero(system.solved_coordinates());
@@ -107,6 +110,34 @@ bool Projection::positions(double t0, const VectorXd& z0, double t, VectorXd& z)
     saddle_.solve(force_, offset_, x_, y_, 1);
     z += x_;
   }
+}
+
+bool Projection::hold_rows_at(const VectorXd& z) {
+  system_.expand(z, q_);
+  system_.jacobian(q_, G_, scratch_);
+  return saddle_.factorise(G_);
+}
+
+// Until moves are round-off or, where lengths of redundant rows have too few digits to agree, what these
+// leave. What rows that have lost their rank do not reach stays.
+bool Projection::along_held_rows(double t, VectorXd& z) {
+  constexpr double unit = std::numeric_limits<double>::epsilon(), settled = 1e-9;
+  double best = std::numeric_limits<double>::infinity();
+  for (iterations_ = 0; iterations_ < 2 * max_projections; ++iterations_) {
+    system_.expand(z, q_);
+    system_.constraint(t, q_, phi_);
+    force_.setZero();
+    offset_ = -phi_;
+    saddle_.solve(force_, offset_, x_, y_, 1);
+    if (!x_.allFinite()) return false;
+    z += x_;
+    const double size = x_.lpNorm<Eigen::Infinity>(), reach = q_.lpNorm<Eigen::Infinity>();
+    const double next = iterations_ == 0 ? size : size * (size / best);
+    if (next <= unit * reach) return true;
+    if (size >= best) return size <= settled * reach;
+    best = size;
+  }
+  return false;
 }
 
 bool Projection::velocities(double t, const VectorXd& z, VectorXd& w) {

@@ -16,13 +16,17 @@ namespace unfurl {
 //     round-off velocities:  [M G^T; G 0] [w; y]  = [M w; 0]       at the moved pose
 class Projection {
  public:
-  explicit Projection(const System& system);
+  explicit Projection(const System& system, double regularisation = SaddleSolver::standard_regularisation);
   // False where the iteration does not reach the constraints. Leaves |Phi| at round-off of the coordinates;
   // where that would move a weak mode by more than 1e-8 of the motion z - z0, what the motion from z0 at t0
   // changes of Phi at round-off of the motion instead.
   [[nodiscard]] bool positions(double t0, const VectorXd& z0, double t, VectorXd& z);
   // The same for an increment of z_0 of which no digit is to be lost: always in what it changes of Phi.
   [[nodiscard]] bool increment(double t0, const VectorXd& z0, double t, VectorXd& move);
+  // Onto the constraints along the rows at one pose, which is given first: a smooth map of poses beside them,
+  // as what is evaluated within a step needs. False where the iteration does not settle.
+  [[nodiscard]] bool hold_rows_at(const VectorXd& z);
+  [[nodiscard]] bool along_held_rows(double t, VectorXd& z);
   [[nodiscard]] bool velocities(double t, const VectorXd& z, VectorXd& w);
   int iterations() const { return iterations_; }  // of the last call of positions
 

@@ -5,11 +5,11 @@ namespace unfurl {
 
 RungeKutta4::RungeKutta4(const System& system, double baumgarte_rate)
     : system_(system),
-      index1_(system),
+      accelerations_(system),
       q_(system.coordinates()),
       lambda_(system.constraints()),
       phi_(system.constraints()) {
-  index1_.stabilise(baumgarte_rate);
+  accelerations_.stabilise(baumgarte_rate);
   for (VectorXd& k : dz_) k.setZero(system.solved_coordinates());
   for (VectorXd& k : dw_) k.setZero(system.solved_coordinates());
   z_.setZero(system.solved_coordinates());
@@ -18,6 +18,7 @@ RungeKutta4::RungeKutta4(const System& system, double baumgarte_rate)
 
 StepReport RungeKutta4::step(State& state, double h) {
   StepReport report;
+  accelerations_.begin(state);
   static constexpr double at[4] = {0.0, 0.5, 0.5, 1.0};
   for (int i = 0; i < 4; ++i) {
     z_ = state.z;
@@ -29,10 +30,11 @@ StepReport RungeKutta4::step(State& state, double h) {
     dz_[i] = w_;
     ++report.factorisations;
     ++report.right_hand_sides;
-    if (!index1_.evaluate(state.t + at[i] * h, z_, w_, dw_[i], lambda_)) {
+    if (!accelerations_.evaluate(state.t + at[i] * h, z_, w_, dw_[i], lambda_)) {
       report.status = StepStatus::not_finite;
       return report;
     }
+    if (accelerations_.seen()) return step(state, h);
   }
   z_ = state.z + h / 6.0 * (dz_[0] + 2.0 * dz_[1] + 2.0 * dz_[2] + dz_[3]);
   w_ = state.w + h / 6.0 * (dw_[0] + 2.0 * dw_[1] + 2.0 * dw_[2] + dw_[3]);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/integrators/index1.hpp"
 #include "core/integrators/integrator.hpp"
+#include "core/integrators/stage_accelerations.hpp"
 
 namespace unfurl {
 
@@ -12,7 +12,7 @@ class RungeKutta4 : public Integrator {
  public:
   explicit RungeKutta4(const System& system, double baumgarte_rate = 0.0);
   StepReport step(State& state, double h) final;
-  void restart() override {}
+  void restart() override { accelerations_.restart(); }
 
  protected:
   // Called with the end of a step before it is accepted: a method may move it. False: the step has failed.
@@ -23,7 +23,7 @@ class RungeKutta4 : public Integrator {
   const System& system_;
 
  private:
-  Index1 index1_;
+  StageAccelerations accelerations_;
   VectorXd z_, w_, q_, lambda_, phi_;
   VectorXd dz_[4], dw_[4];
 };
