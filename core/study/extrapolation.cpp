@@ -4,7 +4,7 @@
 namespace unfurl {
 
 Extrapolation::Extrapolation(const System& system)
-    : system_(system), index1_(system_, true), n_(system.solved_coordinates()), projection_(system_) {
+    : system_(system), accelerations_(system_, true), n_(system.solved_coordinates()), projection_(system_) {
   for (VectorXd* v : {&y0_, &y_, &before_, &now_, &after_, &f_, &f0_}) v->setZero(2 * n_);
   lambda_.setZero(system.constraints());
 }
@@ -12,7 +12,7 @@ Extrapolation::Extrapolation(const System& system)
 bool Extrapolation::rate(double t, const VectorXd& dy, VectorXd& f) {
   y_ = y0_ + dy;
   f.head(n_) = y_.tail(n_);
-  return index1_.evaluate(t, y_.head(n_), y_.tail(n_), f.tail(n_), lambda_);
+  return accelerations_.evaluate(t, y_.head(n_), y_.tail(n_), f.tail(n_), lambda_) && !accelerations_.seen();
 }
 
 // y_1 = y_0 + h f_0,  y_{m+1} = y_{m-1} + 2 h f_m,  S = (y_n + y_{n-1} + h f_n) / 2,  h = H / n. The products
@@ -34,12 +34,13 @@ bool Extrapolation::midpoint(const State& state, double H, int n, VectorXd& out)
 
 bool Extrapolation::step(State& state, double H) {
   system_.follow(state);
+  accelerations_.begin(state);
   y0_ << state.z, state.w;
   before_.setZero();
-  if (!rate(state.t, before_, f0_)) return false;
+  if (!rate(state.t, before_, f0_)) return accelerations_.seen() && step(state, H);
   for (int j = 0; j < columns; ++j) {
     VectorXd next;
-    if (!midpoint(state, H, 2 * (j + 1), next)) return false;
+    if (!midpoint(state, H, 2 * (j + 1), next)) return accelerations_.seen() && step(state, H);
     // T_{j,k+1} = T_{j,k} + (T_{j,k} - T_{j-1,k}) / ((n_j / n_{j-k-1})^2 - 1); the row is kept in place.
     for (int k = 0; k < j; ++k) {
       const double ratio = static_cast<double>(j + 1) / (j - k);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/integrators/carried_sum.hpp"
-#include "core/integrators/index1.hpp"
 #include "core/integrators/projection.hpp"
+#include "core/integrators/stage_accelerations.hpp"
 #include "core/system/state.hpp"
 #include "core/system/system.hpp"
 
@@ -27,7 +27,7 @@ class Extrapolation {
   bool rate(double t, const VectorXd& dy, VectorXd& f);
 
   System system_;  // follows the state that a step begins with
-  Index1 index1_;
+  StageAccelerations accelerations_;
   Index n_;
   Projection projection_;
   CarriedSum carried_;
