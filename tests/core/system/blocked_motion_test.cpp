@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "core/structure/node_positions.hpp"
 #include "tests/support/scene_run.hpp"
@@ -19,8 +20,8 @@ namespace {
 using testing::end_positions, testing::error_of, testing::model_of, testing::run_scene;
 
 // A parallelogram with three cranks of 1.1 m, of which two would do, 1.1 rad from the x axis, with its
-// positions given to so many decimals.
-std::string three_cranks(int decimals) {
+// positions given to so many decimals, so far along x.
+std::string three_cranks(int decimals, double from = 0) {
   const double pivots[3][2] = {
       {0, 0}, {std::sqrt(2.0), std::sqrt(0.27)}, {3.14159265358979, 1.0392304845413}};
   std::string nodes, rods;
@@ -30,7 +31,7 @@ std::string three_cranks(int decimals) {
     std::snprintf(text, sizeof text,
                   "{name = 'A%d', position = [%.*f, 0, %.*f], fixed = true}, "
                   "{name = 'B%d', position = [%.*f, 0, %.*f]}, ",
-                  k, decimals, x, decimals, z, k, decimals, x + 1.1 * std::cos(1.1), decimals,
+                  k, decimals, from + x, decimals, z, k, decimals, from + (x + 1.1 * std::cos(1.1)), decimals,
                   z + 1.1 * std::sin(1.1));
     nodes += text;
     std::snprintf(text, sizeof text, "{nodes = ['A%d', 'B%d'], mass = 0.5}, ", k, k);
@@ -130,6 +131,36 @@ TEST_CASE("positions with too few digits for a step are warned of and all digits
   }
 }
 
+// Digits that end at 10^-d move a node by 0.7 10^-d at most, in its plane, and a unit row of rods of 1.1 m
+// and more by 1.4 / 1.1 of that: all six by 3.2 10^-d, which bounds what is left of the one that depends. Far
+// from the origin, where all digits that a number has are given, the spacing of numbers does the same.
+TEST_CASE("how far rows follow from one another is told and what takes their digits") {
+  const auto share_of = [](const std::string& warning) {
+    const std::string mark = "follow from one another only to ";
+    const std::size_t at = warning.find(mark);
+    return at == std::string::npos ? 0.0 : std::strtod(warning.c_str() + at + mark.size(), nullptr);
+  };
+  const auto warning_of = [](const std::string& scene) {
+    const auto model = model_of(scene);
+    return misfit_warning(model->system, node_positions(model->structure));
+  };
+  for (const int decimals : {9, 10}) {
+    const std::string warning = warning_of(three_cranks(decimals));
+    CAPTURE(decimals, warning);
+    CHECK(share_of(warning) < 3.2 * std::pow(10, -decimals));
+    CHECK(share_of(warning) > 1e-3 * std::pow(10, -decimals));
+    CHECK(has(warning, "give them all 16 digits"));
+  }
+  for (const double from : {-1.9e5, 4.4e6}) {
+    const std::string warning = warning_of(three_cranks(17, from));
+    CAPTURE(from, warning);
+    CHECK(share_of(warning) < 3.2 * 2e-16 * std::abs(from));
+    CHECK(share_of(warning) > 0);
+    CHECK(has(warning, "move the structure near the origin"));
+    CHECK_FALSE(has(warning, "16 digits"));
+  }
+}
+
 TEST_CASE("rods in line under a load across are named and slack helps") {
   const Simulation run = run_scene(in_line("0"));
   CHECK(run.status == RunStatus::failed);
@@ -216,6 +247,12 @@ TEST_CASE("what moves to second order is not said to be held") {
   CHECK(held_in(flat) == "");
   CHECK(held_in(in_line("0")) == "rod A-B, rod B-C");
   CHECK(held_in(in_line("0.02")) == "");
+  // In line with a rod along both of them, wherever they float: the middle cannot leave the line of the ends.
+  CHECK(
+      held_in("[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0.2, 0.1, -0.3]}, "
+              "{name = 'B', position = [0.8, 0.9, -0.3]}, {name = 'C', position = [1.7, 2.1, -0.3]}]\n"
+              "rods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['B', 'C'], mass = 2}, {nodes = ['A', 'C'], "
+              "mass = 3}]\n") == "rod A-B, rod B-C, rod A-C");
 }
 
 // Cranks of 1 m and a coupler of 2 m in line: with velocities b and c of their ends across the line they bend

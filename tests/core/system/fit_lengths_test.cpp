@@ -8,6 +8,7 @@
 #include "core/scene/reader.hpp"
 #include "core/simulate/simulation.hpp"
 #include "core/structure/structure_error.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -83,6 +84,35 @@ TEST_CASE("what cannot move, or is driven against what holds it, is refused by n
       error_of(four_bar("", "", "", "[[structure.rods]]\nnodes = [\"O\", \"B\"]\nmass = 1\n"));
   CHECK_THAT(stiff, Catch::Contains("nothing can move"));
   CHECK_THAT(stiff, Catch::Contains("fixed of O"));
+}
+
+// O-B-C is an arch of rods that are longer than their nodes are apart: B rises as the square root of what the
+// lengths grow by, where steps that keep the first Jacobian would come nearer by a third at a time only. D
+// and E lie in line with O-B, and rise two and three times as much, at most by a fifth of a rod.
+TEST_CASE("a flat arch is fitted to its lengths and refused where it moves too far at every size") {
+  const auto arch = [](double size, double from, double to) {
+    const auto at = [&](double x, double y) {
+      return "position = [" + testing::number(size * x) + ", " + testing::number(size * y) + ", 0]";
+    };
+    const std::string length = "mass = 0.3, length = " + testing::number(size * std::hypot(1, to)) + "}";
+    return "[structure]\nkind = 'custom'\nnodes = [{name = 'O', fixed = true, " + at(0, 0) +
+           "}, {name = 'C', fixed = true, " + at(2, 0) + "}, {name = 'B', " + at(1, from) +
+           "}, {name = 'D', " + at(2, 2 * from) + "}, {name = 'E', " + at(3, 3 * from) + "}, {name = 'P', " +
+           at(0.3, -0.8) + "}]\nrods = [{nodes = ['O', 'B'], " + length + ", {nodes = ['B', 'C'], " + length +
+           ", {nodes = ['B', 'D'], " + length + ", {nodes = ['D', 'E'], " + length +
+           ", {nodes = ['O', 'P'], mass = 0.1}]\n[[constraints]]\nkind = 'plane'\nnodes = ['B', 'D', 'E']\n"
+           "normal = [0, 0, 1]\n[[constraints]]\nkind = 'collinear'\nnodes = ['O', 'B', 'D', 'E']\n";
+  };
+  for (const double size : {1.0, 0.013, 210.0}) {
+    INFO(size);
+    const auto model = model_of(arch(size, 0.1, 0.16));
+    for (const int k : {1, 2, 3}) {
+      const Vec3 wanted = k * size * Vec3(1, 0.16, 0);
+      const Vec3& found = model->structure.nodes[static_cast<std::size_t>(k + 1)].position;
+      CHECK((found - wanted).norm() < 1e-11 * size);  // rounding of lengths over the slope of the arch
+    }
+    CHECK_THAT(error_of(arch(size, 0.02, 0.14)), Catch::Contains("no pose close to the given one"));
+  }
 }
 
 }  // namespace fit_lengths_test

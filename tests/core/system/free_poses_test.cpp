@@ -214,11 +214,12 @@ TEST_CASE("the rotor of a motor follows what is led by hand") {
   CHECK((heavy.pulled(q, 2, target) - q).head(in_space).isApprox(light.pulled(rest, 2, target) - rest, 1e-6));
 }
 
+// The drive counts the same two angles as the gear, in the other order.
 TEST_CASE("a driven combination that lets go takes its angles out of those that are counted") {
   const Structure structure =
       structure_of(std::string(geared) +
                    "[[constraints]]\nkind = 'combination'\nmotion = 'rate'\nrate = 10\n"
-                   "terms = ['angle W O A about 0 0 1', 'angle O A B about 0 0 1']\n");
+                   "terms = ['angle O A B about 0 0 1', 'angle W O A about 0 0 1']\n");
   // The drive stands first, so that its angles come before those of the gear.
   Structure first = structure;
   std::rotate(first.constraints.begin(), first.constraints.end() - 1, first.constraints.end());
@@ -229,11 +230,27 @@ TEST_CASE("a driven combination that lets go takes its angles out of those that 
   for (const Structure& each : {structure, first}) {
     VectorXd angles = followed_of(each);
     REQUIRE(angles.size() == 4);
-    for (Index k = 0; k < 4; ++k) angles[k] += (k % 2 == 0 ? 1 : 2) * u;
+    const bool drive_first = each.constraints.front().target.moves();
+    const double turned[2][4] = {{u, 2 * u, 2 * u, u}, {2 * u, u, u, 2 * u}};
+    for (Index k = 0; k < 4; ++k) angles[k] += turned[drive_first ? 1 : 0][k];
     const FreePoses poses(each, q, angles);
     CHECK(poses.error(q) < 1e-12);
     CHECK(poses.motions(q).cols() == 1);
   }
+}
+
+// Without any constraint a node goes where it is led, and there is nothing to violate.
+TEST_CASE("what nothing holds goes where it is led by hand") {
+  const Structure structure = structure_of(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'P', position = [0.3, -0.2, 0.7], mass = 1},\n"
+      "{name = 'Q', position = [1.1, 0.4, 0.2], mass = 2}]\n");
+  FreePoses poses(structure);
+  const Vec3 target(0.8, 0.9, -0.1);
+  VectorXd q = node_positions(structure);
+  for (int i = 0; i < 30; ++i) q = poses.pulled(q, 1, target);
+  CHECK((q.tail<3>() - target).norm() < 1e-6);
+  CHECK((q.head<3>() - Vec3(0.3, -0.2, 0.7)).norm() < 1e-12);
+  CHECK(poses.error(q) == 0);
 }
 
 }  // namespace free_poses_test

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
 #include "core/scene/build.hpp"
@@ -65,6 +66,7 @@ TEST_CASE("a rotor, a drum and a controller are no bodies: where a scene lies, i
         // Two directions for each rod and, free, a place; the drum turns by itself while its cable is slack.
         const bool drum = std::string(force).find("winch") != std::string::npos;
         CHECK(m.degrees_of_freedom == (*fixed ? 4 : 7) + (drum ? 1 : 0));
+        CHECK(m.count == m.degrees_of_freedom);  // nothing is redundant
       }
 }
 
@@ -220,6 +222,25 @@ TEST_CASE("the sparse analysis of redundant nets finds the three motions that th
     CHECK(m.rigid_motions == 3);
     CHECK(m.degrees_of_freedom == 3);
     CHECK(m.redundant.size() == spec.rods.size() - (2 * k * k - 3));
+  }
+}
+
+// Two planes that enclose the angle 2 s have the singular values sqrt(1 - cos 2 s) = sqrt(2) sin s and
+// sqrt(1 + cos 2 s): however near to each other, they are two equations.
+TEST_CASE("planes that are nearly one are two equations") {
+  for (const double s : {0.02, 3e-6, 7e-9}) {
+    INFO(s);
+    CustomSpec spec;
+    spec.nodes = {{"P", {0.3, -0.7, 1.9}, Vec3::Zero(), 0.4, false}};
+    Structure structure = build_custom(spec);
+    for (const Vec3& normal : {Vec3(std::cos(s), std::sin(s), 0), Vec3(std::cos(s), -std::sin(s), 0)})
+      structure.constraints.push_back({"plane", "plane", {0}, {normal}, 0.0, {}, {}});
+    const Mobility m = analyse_mobility(System(structure, true), node_positions(structure));
+    CHECK(m.rank == 2);
+    CHECK(m.redundant.empty());
+    CHECK(m.degrees_of_freedom == 1);
+    CHECK(m.smallest_singular_value ==
+          Approx(std::sqrt(2.0) * std::sin(s)).epsilon(1e-6));  // rounding of normals
   }
 }
 
