@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What cannot be assembled as given is refused wherever the origin lies.
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
@@ -68,6 +69,25 @@ TEST_CASE("what is violated at the start is listed with the worst, up to six by 
   CHECK(testing::error_of(table({0, 0, -34.2e-7, 0, 0, 0, 0})) == "");
   CHECK(testing::error_of(table({0, 0, 34.4e-7, 0, 0, 0, 0})) != "");
   CHECK(testing::error_of(table({0, 0, -34.4e-7, 0, 0, 0, 0})) != "");
+}
+
+// O, R and N along the diagonal of their box: the line is longer than its sides, by sqrt(3). N is off it by d
+// along (1, -1, 0) / sqrt(2), of which the row of z has 2 / sqrt(6), times |OR| / |ON|.
+TEST_CASE("a line across the box of its nodes is held to a ten-millionth of its own length") {
+  const double near = 0.9, far = 3.1, limit = 1e-7 * far * far / near * std::sqrt(6.0) / 2;
+  for (const double share : {-1.03, -0.97, 0.97, 1.03}) {
+    INFO(share);
+    const auto at = [](double along, double off) {
+      const double x = 0.2 + along / std::sqrt(3.0), d = off / std::sqrt(2.0);
+      return "position = [" + testing::number(x + d) + ", " + testing::number(x - d) + ", " +
+             testing::number(x) + "]";
+    };
+    const std::string error = testing::error_of(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'O', fixed = true, " + at(0, 0) +
+        "}, {name = 'R', fixed = true, " + at(near, 0) + "}, {name = 'N', mass = 1, " +
+        at(far, share * limit) + "}]\n[[constraints]]\nkind = 'collinear'\nnodes = ['O', 'R', 'N']\n");
+    CHECK((error.find("cannot be assembled as given") != std::string::npos) == (std::abs(share) > 1));
+  }
 }
 
 // Three equations keep a node on a line, of which two count, in the list as in what the check says of it.

@@ -198,4 +198,57 @@ TEST_CASE("a small coefficient beside an eliminated one holds what it is of") {
     }
 }
 
+// What moves starts on the constraints, as near as a coordinate can be told, however far the origin is; where
+// the positions are off by what is let through, it does not start from them.
+TEST_CASE("positions that are off a plane by a little are put onto it on either side") {
+  const Vec3 normal(0.48, 0.6, 0.64);
+  for (const double far : {0.0, 1300.0, -2900.0})
+    for (const double off : {4e-8, -4e-8}) {
+      INFO(far << " " << off);
+      const Vec3 p = Vec3(0.3, -0.2, 0.9) + Vec3::Constant(far), q = p + Vec3(1.1, 0.7, -0.4);
+      const auto node = [](const Vec3& x) {
+        return "position = [" + number(x[0]) + ", " + number(x[1]) + ", " + number(x[2]) + "], mass = 1}";
+      };
+      const auto model = testing::model_of(
+          "[structure]\nkind = 'custom'\nnodes = [{name = 'P', " + node(p) + ", {name = 'Q', " + node(q) +
+          "]\nrods = [{nodes = ['P', 'Q'], mass = 1}]\n[[constraints]]\nkind = 'relation'\nnodes = ['P']\n"
+          "coefficients = [0.48, 0.6, 0.64]\nvalue = " +
+          number(normal.dot(p) + off) + "\n");
+      const System& system = model->system;
+      REQUIRE(system.solved_coordinates() == 5);
+      VectorXd start(6), on(6), phi(system.all_constraints());
+      start << p, q;
+      system.expand(system.reduce(start), on);
+      system.all_constraint_values(0.0, on, phi);
+      const std::vector<int> sources = system.all_sources();  // rods have none
+      for (std::size_t r = 0; r < sources.size(); ++r)
+        if (sources[r] >= 0) CHECK(std::abs(phi[static_cast<Index>(r)]) < 1e-12 + 1e-15 * std::abs(far));
+      CHECK((on - start).lpNorm<Eigen::Infinity>() < 2 * std::abs(off));
+    }
+}
+
+// P is held across the plane that it moves in once more, and once more in line with three nodes that stand in
+// it: nothing new, whichever way it is counted. What is held along the plane is new, what Q holds as well.
+TEST_CASE("a held coordinate across a plane follows from it along either way") {
+  for (const double way : {1.0, -1.0}) {
+    INFO(way);
+    const auto model = testing::model_of(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'P', position = [0.3, -0.2, 0.9], mass = 1}, {name = "
+        "'Q', position = [1.3, 0.7, 0.2], mass = 2}, {name = 'A', position = [-0.2, 0.2, 0.9], fixed = "
+        "true}, "
+        "{name = 'B', position = [0.3, 0.44, 0.3], fixed = true}, {name = 'C', position = [0.94, -0.2, "
+        "0.42], "
+        "fixed = true}]\n[[constraints]]\nkind = 'plane'\nnodes = ['P']\nnormal = [0.48, 0.6, 0.64]\n"
+        "[[constraints]]\nkind = 'coordinate'\nname = 'along'\nnodes = ['P']\ndirection = [0.8, 0, -0.6]\n"
+        "[[constraints]]\nkind = 'coordinate'\nname = 'across'\nnodes = ['P']\ndirection = [" +
+        number(0.48 * way) + ", " + number(0.6 * way) + ", " + number(0.64 * way) +
+        "]\n[[constraints]]\nkind = 'coordinate'\nname = 'other'\nnodes = ['Q']\ndirection = [0.48, 0.6, "
+        "0.64]\n[[constraints]]\nkind = 'coplanar'\nname = 'flat'\nnodes = ['A', 'B', 'C', 'P']\n");
+    std::vector<std::string> names;
+    for (const int row : model->system.rows_of_digits())
+      names.push_back(model->system.all_names()[static_cast<std::size_t>(row)]);
+    CHECK(names == std::vector<std::string>{"across", "flat"});
+  }
+}
+
 }  // namespace row_rounding_test
