@@ -127,7 +127,7 @@ void System::find_implied_rows() {
   }
   SparseRows both(d.rows, 2 * n);
   both.setFromTriplets(entries.begin(), entries.end());
-  for (int first = 0, end = 0; first < d.rows; first = end) {
+  for (int first = 0, end; first < d.rows; first = end) {
     for (end = first + 1; end < d.rows && same(end, first);) ++end;
     if (source[static_cast<std::size_t>(first)] >= 0) add_dependent(both, first, end, digits, d.implied);
   }

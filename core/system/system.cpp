@@ -162,8 +162,7 @@ void System::Data::build_forces(const Structure& structure) {
       block->add(0.0, start.data(), start.data(), 1.0, unloaded_force.data());
   }
   gravity_force = node_mass * structure.gravity.replicate(coordinates / 3, 1);
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    if (structure.nodes[i].ghost) gravity_force.segment<3>(3 * static_cast<Index>(i)).setZero();
+  for (const int ghost : ghosts) gravity_force.segment<3>(3 * ghost).setZero();
   find_integrators(structure);
 }
 

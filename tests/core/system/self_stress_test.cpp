@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/system/self_stress.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <functional>
 #include <map>
 
 #include "core/scene/build.hpp"
@@ -110,6 +112,7 @@ TEST_CASE("a state of self-stress is in balance, and its members are what is not
         member[static_cast<std::size_t>(m.row)] = 1;
       }
       CHECK(y.lpNorm<Eigen::Infinity>() == Approx(1.0));
+      CHECK(std::ranges::is_sorted(state.members, std::less_equal(), &SelfStress::Member::row));
       // Round-off of 1e-16 over the smallest singular value, 2e-3 in the folded ring.
       CHECK((G.transpose() * y).norm() < 1e-11);
     }
@@ -149,6 +152,25 @@ TEST_CASE("parallel rods share what none of them is known to carry") {
   CHECK(one.force == Approx(-two.force));
   for (std::size_t r = 0; r < names.size(); ++r)
     CHECK((j.balance.determined[r] == 0) == (names[r] == "rod one" || names[r] == "rod two"));
+}
+
+// One modulus is enough to say how the two rods side by side share: what stretches takes what is left.
+TEST_CASE("parallel rods of which one has a modulus are determined") {
+  for (const std::string stretches : {"one", "two", "out"}) {
+    INFO(stretches);
+    std::string text = parallel;
+    const std::string mark = "name = '" + stretches + "'\n";
+    text.insert(text.find(mark) + mark.size(), "area = 3e-4\nyoungs_modulus = 7e10\n");
+    const Judged j = judged(read_scene_text(text, "parallel.toml"));
+    const ForceBalance balance = force_balance(j.model->system, j.q, j.mobility, j.model->structure.rods);
+    CHECK(balance.states.size() == 1);
+    const auto names = j.model->system.all_names();
+    for (std::size_t r = 0; r < names.size(); ++r) {
+      INFO(names[r]);
+      const bool shared = names[r] == "rod one" || names[r] == "rod two";
+      CHECK((balance.determined[r] == 0) == (shared && stretches == "out"));
+    }
+  }
 }
 
 TEST_CASE("a large ring's forces are judged though its states are not listed") {
