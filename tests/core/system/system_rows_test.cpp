@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rows by their names, and matrices that are kept dense.
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 
 #include "tests/support/scene_run.hpp"
 
@@ -46,6 +48,29 @@ TEST_CASE("a mass matrix that is kept dense has the same entries and all of them
   const MatrixXd wanted(sparse->system.mass());
   CHECK(MatrixXd(dense->system.mass()) == wanted);
   CHECK(dense->system.mass().nonZeros() == wanted.size());
+}
+
+// A controller's integral is a coordinate that nothing accelerates.
+TEST_CASE("what moves has its mass and the integral of a controller none that could be moved") {
+  const auto model = testing::model_of(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0.1, 0, 0], fixed = true}, {name = "
+      "'B', "
+      "position = [1.2, 0.3, 0]}, {name = 'C', position = [1.9, 1.4, 0.2], mass = 0.6}]\n"
+      "rods = [{nodes = ['A', 'B'], mass = 1.3}, {nodes = ['B', 'C'], mass = 0.7}]\n"
+      "[[forces]]\nkind = 'motor'\nnodes = ['A', 'B', 'C']\nstall_torque = 0.1\nno_load_speed = 3000\n"
+      "inertia = 2e-4\ncontrol = 'position'\nproportional = 1.5\nintegral = 0.8\n");
+  const System& system = model->system;
+  REQUIRE(system.integrals() == 1);
+  const VectorXd m = system.moving_mass(), all = system.mass().diagonal();
+  CHECK((m.array() == std::numeric_limits<double>::infinity()).count() == 1);
+  VectorXd w = VectorXd::Zero(m.size());
+  for (Index i = 0; i < m.size(); ++i) {  // as it moves alone
+    w.setZero();
+    w[i] = 1.7;
+    if (std::isfinite(m[i])) CHECK(m[i] == all[i]);
+    CHECK(system.kinetic_energy(w) ==
+          Approx(std::isfinite(m[i]) ? 0.5 * m[i] * 1.7 * 1.7 : 0.0).epsilon(1e-14));
+  }
 }
 
 }  // namespace system_rows_test
