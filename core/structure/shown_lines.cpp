@@ -30,7 +30,7 @@ std::vector<std::vector<int>> telescopes(const Structure& structure) {
   std::vector<std::vector<int>> found;
   const auto add_length = [&](const Measure& measure) {
     const bool one = measure.kind == MeasureKind::combination && measure.terms.size() == 1;
-    const Measure& length = one ? measure.terms.front().measure : measure;
+    const Measure& length = one ? measure.terms[0].measure : measure;
     if (length.kind != MeasureKind::length) return;
     const std::vector<int>& n = length.nodes;
     const bool rod = std::ranges::any_of(structure.rods, [&](const Rod& r) {

@@ -69,8 +69,9 @@ MatrixXd dense_jacobian(const ConstraintBlock& block, const VectorXd& q) {
 MatrixXd dense_curvature(const ConstraintBlock& block, const VectorXd& q, const VectorXd& lambda) {
   std::size_t size = 0;
   for (int r = 0; r < block.rows(); ++r) size += block.stencil(r).size() * block.stencil(r).size();
-  std::vector<double> hess(size);
+  std::vector<double> hess(size + 1, 7.7);  // all of it is written, and nothing behind it
   block.curvature(q.data(), lambda.data(), hess.data());
+  CHECK(hess.back() == 7.7);
   MatrixXd H = MatrixXd::Zero(q.size(), q.size());
   const double* h = hess.data();
   for (int r = 0; r < block.rows(); ++r)

@@ -51,4 +51,70 @@ stiffness = 10
   CHECK(lines == "spring 45 actuator 01 actuator 12 actuator 23 actuator 41 ");
 }
 
+// Two telescopes that are not each other's stages, and lines to the first node; what has no copy is not seen.
+TEST_CASE("telescopes go on from their own last stage and lines lead to the first node as well") {
+  const auto model = testing::model_of(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], mass = 2}, {name = "B", position = [1, 0, 0], mass = 1},
+  {name = "C", position = [2, 0, 0], mass = 1}, {name = "D", position = [3, 0, 0], mass = 1},
+  {name = "E", position = [0, 1, 0], fixed = true}, {name = "F", position = [0.8, 1.4, 0], mass = 1},
+  {name = "G", position = [1.6, 1.8, 0], mass = 1}, {name = "H", position = [2.8, 2.4, 0], mass = 1}]
+[[constraints]]
+kind = "telescope"
+nodes = ["D", "C", "B"]
+[[constraints]]
+kind = "telescope"
+nodes = ["E", "F", "G", "H"]
+[[forces]]
+kind = "spring"
+nodes = ["E", "A"]
+stiffness = 10
+[[forces]]
+kind = "cable"
+nodes = ["H", "D"]
+axial_stiffness = 1e3
+[[forces]]
+kind = "cable"
+nodes = ["C", "A"]
+axial_stiffness = 1e3
+)");
+  Structure structure = model->structure;
+  CHECK(telescopes(structure) == std::vector<std::vector<int>>{{3, 2, 1}, {4, 5, 6, 7}});
+  const auto listed = [&] {
+    show_cables(structure);
+    std::string lines;
+    for (const ShownLine& line : lines_between_nodes(structure))
+      lines += line.group + " " + std::to_string(line.a) + std::to_string(line.b) + " ";
+    return lines;
+  };
+  CHECK(listed() ==
+        "cable 73 cable 20 spring 40 actuator 32 actuator 21 actuator 45 actuator 56 actuator 67 ");
+  // A second copy of a node is not what lines lead to, and H is not shown at all.
+  structure.node_copies.back() = structure.node_copies[2];
+  CHECK(listed() == "cable 20 spring 40 actuator 32 actuator 21 actuator 45 actuator 56 ");
+  CHECK(stretches({MeasureKind::length, {5, 3}, Vec3::Zero(), 0.0, {}}) ==
+        std::vector<std::pair<int, int>>{{5, 3}});
+}
+
+// Four tenths of the thinnest: 0.004 of the size, a rod's own radius, or a sixtieth of the length of one that
+// has none.
+TEST_CASE("lines are thinner than the thinnest rod") {
+  const auto model = testing::model_of(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', "
+      "position = [1.2, 0, 0]}, {name = 'C', position = [1.2, 3, 0]}]\nrods = [{nodes = ['A', 'B'], mass = "
+      "1}, "
+      "{nodes = ['B', 'C'], mass = 1}]\n");
+  const auto radius = [&](double first, double second, double size) {
+    Structure structure = model->structure;
+    structure.rods[0].radius = first, structure.rods[1].radius = second;
+    return shown_line_radius(structure, size);
+  };
+  CHECK(radius(0, 0, 100) == Approx(0.4 * 1.2 / 60));
+  CHECK(radius(0, 0, 2) == Approx(0.4 * 0.008));
+  CHECK(radius(0, 0, 0) == Approx(0.4 * 0.004));
+  CHECK(radius(0.07, 0.03, 100) == Approx(0.4 * 0.03));
+  CHECK(radius(0.07, 0.3, 100) == Approx(0.4 * 0.07));
+}
+
 }  // namespace shown_lines_test

@@ -95,4 +95,50 @@ TEST_CASE("a short ramp has no acceleration left at its end as doubles add it") 
     }
 }
 
+// Half of a ramp is lost, whatever its form: without it, it begins that much later, and is the same behind
+// it.
+TEST_CASE("what is made a jump is behind it what it was") {
+  const double near = 1e-3;
+  TimeFunction rate;
+  rate.kind = TimeFunction::Kind::rate, rate.offset = 0.3, rate.rate = -1.7, rate.ramp = 4e-4,
+  rate.start = 0.2;
+  TimeFunction jumps = rate;
+  CHECK(make_jumps(jumps, near));
+  CHECK(jumps.ramp == 0);
+  for (const double t : {0.1, 0.201, 0.9, 3.0})
+    for (const int order : {0, 1, 2})
+      CHECK(jumps.derivative(order, t) == Approx(rate.derivative(order, t)).epsilon(0).margin(1e-15));
+  CHECK(make_jumps(rate, 3e-4));  // a ramp of that length is none of these
+  CHECK(rate.ramp == 4e-4);
+}
+
+// A spike of 5 between what falls to 0 and what falls to -4 is not made up by one jump of the same area
+// within its flank; of neighbours a thousand times as long as that the share that it costs is a thousandth.
+TEST_CASE("a line that jumps keeps its area, or is said not to where that can be seen") {
+  const auto line = [](double before, double flank, double behind, const std::vector<double>& values) {
+    TimeFunction f;
+    f.kind = TimeFunction::Kind::linear;
+    f.times = {0.2, 0.2 + before, 0.2 + before + flank, 0.2 + before + flank + behind};
+    f.values = values;
+    return f;
+  };
+  const auto area = [](const TimeFunction& f) {
+    double sum = 0;
+    for (std::size_t i = 1; i < f.times.size(); ++i)
+      sum += 0.5 * (f.times[i] - f.times[i - 1]) * (f.values[i] + f.values[i - 1]);
+    return sum;
+  };
+  const double near = 1e-3;
+  for (const double before : {0.7, 0.03})
+    for (const double behind : {0.4, 0.05}) {
+      TimeFunction f = line(before, 2e-4, behind, {0.3, 0.7, 5.1, 4.2});
+      const double wanted = area(f);
+      CHECK(make_jumps(f, near));
+      CHECK(f.times[1] == f.times[2]);
+      CHECK(area(f) == Approx(wanted).epsilon(1e-13));
+      TimeFunction spike = line(before, 2e-4, behind, {0.1, 0.2, 5.0, -4.0});
+      CHECK(make_jumps(spike, near) == (before > 0.2 && behind > 0.2));
+    }
+}
+
 }  // namespace time_function_test
