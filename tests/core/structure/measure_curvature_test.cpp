@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The second derivative of a measure along a straight line, by scalars, against v^T Hess v.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
 
 #include "core/structure/measure.hpp"
@@ -25,6 +26,8 @@ std::vector<Measure> one_of_each() {
                            of_nodes(MeasureKind::length, {0, 3}),
                            of_nodes(MeasureKind::angle, {0, 1, 2, 3}),
                            of_nodes(MeasureKind::angle, {1, 0, 1, 4}, axis),
+                           of_nodes(MeasureKind::angle, {0, 1, 2, 3, 4, 3}),
+                           of_nodes(MeasureKind::angle, {0, 1, 2, 3, 4, 0}, axis),
                            of_nodes(MeasureKind::fold, {}),
                            of_nodes(MeasureKind::dihedral, {0, 1, 2, 3})};
   Measure sum;
@@ -75,6 +78,43 @@ TEST_CASE("the curvature of a measure along a line is that of its Hessian") {
         CHECK(curvature == 0.0);
       else
         CHECK(terms > 0.0);
+    }
+}
+
+// The tangents of parabolas through their first two equal parts, at which they begin: of x_0 + a u + b u^2
+// the direction a. What is straight has its own.
+TEST_CASE("an angle of six nodes is that of the tangents") {
+  const Vec3 a(0.7, -0.3, 0.5), b(0.2, 0.4, -0.1), c(-0.4, 0.6, 0.3), d(0.3, 0.1, 0.25), from(0.1, 0.9, -0.6);
+  VectorXd q(18), there(12);
+  q << from, from + a + b, from + d, from + d + c - 0.5 * b, from + 2 * a + 4 * b, from + d + 2 * c - 2 * b;
+  there << from, from + a, from + d, from + d + c;
+  const Vec3 axis = Vec3(1, -2, 0.5).normalized();
+  for (const Vec3& about : {Vec3(Vec3::Zero()), axis}) {
+    const MeasureFunction six(of_nodes(MeasureKind::angle, {0, 1, 2, 3, 4, 5}, about), {}),
+        four(of_nodes(MeasureKind::angle, {0, 1, 2, 3}, about), {});
+    CHECK(six.value(q.data()) == Approx(four.value(there.data())).epsilon(1e-14));
+  }
+}
+
+// Two sides of 0.8 and 0.5 m in line turn against each other at w: an angle of 0 has fallen to it, if they
+// moved before, and grows from it where a motion begins; one of 180 degrees the other way round. What rests,
+// by velocities of rounding, has no rate.
+TEST_CASE("an angle in line changes as its sides turn and not at all where they rest") {
+  const Vec3 u = Vec3(2, -1, 2) / 3, across = Vec3(1, 2, 0) / std::sqrt(5.0);
+  for (const double side : {1.0, -1.0})
+    for (const double w : {0.7, 1e-14}) {
+      INFO((side > 0 ? "folded" : "stretched") << ", " << w << " rad/s");
+      VectorXd q(9), v(9);
+      q << Vec3(0.3, -0.2, 0.1), Vec3(0.3, -0.2, 0.1) + 0.8 * u, Vec3(0.3, -0.2, 0.1) + side * 0.5 * u;
+      v << Vec3::Zero(), 0.8 * 0.4 * w * across, -side * 0.5 * 0.6 * w * across;
+      const MeasureFunction angle(of_nodes(MeasureKind::angle, {0, 1, 0, 2}), {});
+      VectorXd g(12);
+      for (const double t : {0.0, 0.3}) {
+        CHECK(angle.value_and_gradient(q.data(), v.data(), g.data(), Moment(t), -1) ==
+              Approx(side > 0 ? 0 : pi).epsilon(0).margin(1e-15));
+        const double rate = angle.rate(g.data(), v.data()), grows = (t == 0 ? 1 : -1) * side;
+        CHECK(rate == Approx(w > 1e-9 ? grows * w : 0.0).epsilon(0).margin(1e-14 * w));
+      }
     }
 }
 
