@@ -55,15 +55,13 @@ int Assembly::node(std::string name, const Vec3& position, double mass, const Ve
   return static_cast<int>(structure.nodes.size()) - 1;
 }
 
-int Assembly::rod(int a, int b, double length, double mass, std::string_view group, double radius) {
+void Assembly::rod(int a, int b, double length, double mass, std::string_view group, double radius) {
   structure.rods.push_back({name(a) + "-" + name(b), a, b, mass, length, std::string(group), radius, 1.0});
-  return static_cast<int>(structure.rods.size()) - 1;
 }
 
-int Assembly::brace(int a, int b, double length) {
-  const int index = rod(a, b, length, 0.0, "brace", 0.0);
+void Assembly::brace(int a, int b, double length) {
+  rod(a, b, length, 0.0, "brace", 0.0);
   structure.rods.back().name.insert(0, "brace ");
-  return index;
 }
 
 void Assembly::constrain(const char* kind, int node, const Vec3& direction) {

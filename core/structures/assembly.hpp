@@ -33,10 +33,10 @@ class Assembly {
  public:
   int node(std::string name, const Vec3& position, double mass = 0.0, const Vec3& velocity = Vec3::Zero());
   // A rod "A-B" with the given length, the distance of its nodes up to round-off.
-  int rod(int a, int b, double length, double mass, std::string_view group, double radius);
+  void rod(int a, int b, double length, double mass, std::string_view group, double radius);
 
   // A massless rod "brace A-B" of the group "brace", which makes its neighbours one rigid body.
-  int brace(int a, int b, double length);
+  void brace(int a, int b, double length);
 
   void fix(int node);
   void plane(int node, const Vec3& normal);    // a unit normal
