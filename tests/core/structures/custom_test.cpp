@@ -179,6 +179,29 @@ TEST_CASE("every number of a rod that cannot be is named") {
   CHECK(problem(&CustomRod::length, 2.0).empty());
 }
 
+TEST_CASE("what a rod of a list lacks to give and to bend is named") {
+  CustomSpec spec = triangle();
+  spec.material.section = "tube";
+  spec.material.wall_thickness = 2e-3;
+  spec.rods[1].area = pi * 4e-6;  // of a rod of that radius
+  CHECK(problems_of(spec).empty());
+  spec.rods[1].area = 0.99 * pi * 4e-6;
+  CHECK(problems_of(spec).starts_with("rods[1].area: a tube needs the thickness of its wall"));
+  spec = triangle();
+  spec.rods[1].segments = 3;
+  CHECK(problems_of(spec).starts_with("rods[1].segments: a rod that bends needs its area"));
+  spec.rods[1].area = 2e-5;
+  CHECK(problems_of(spec).starts_with("rods[1].segments: a rod that bends needs its area"));
+  spec.rods[1].youngs_modulus = 7e10;
+  CHECK(problems_of(spec).empty());
+  spec.rods[1].elastic = true;
+  spec.rods[1].mass = 0.0;
+  CHECK(problems_of(spec).empty());
+  spec.material.damping_ratio = 0.02;
+  CHECK(problems_of(spec) ==
+        "rods[1].mass: damping_ratio needs the mass of an elastic rod; damping_time does not\n");
+}
+
 TEST_CASE("building a wrong list throws its first problem") {
   CustomSpec spec = triangle();
   spec.rods.push_back(rod("A", "X"));

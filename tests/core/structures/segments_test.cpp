@@ -192,6 +192,46 @@ TEST_CASE("an error of length is that of a whole rod, however many parts it is c
   }
 }
 
+// Half as much again for each end that is held at an angle, wherever the rod begins: of its parts that next
+// to the end, of two parts the one couple between them for both.
+TEST_CASE("a rod that is held at an angle bends as stiffly whichever end it is given from") {
+  const auto couples = [](const std::string& nodes, int parts, bool both) {
+    const auto model = testing::model_of(R"([structure]
+kind = "custom"
+nodes = [{name = "W", position = [0, -1, 0], fixed = true}, {name = "O", position = [0, 0, 0], fixed = true},
+         {name = "A", position = [1.2, 0, 0], mass = 0.4}, {name = "B", position = [1.2, 0.7, 0], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 1},
+        {area = 2e-4, youngs_modulus = 7e10, mass = 0.8, segments = )" +
+                                         std::to_string(parts) + ", nodes = [" + nodes + R"(]}]
+[[constraints]]
+kind = "plane"
+nodes = ["A", "B"]
+normal = [0, 0, 1]
+[[constraints]]
+kind = "angle"
+nodes = ["W", "O", "A"]
+axis = [0, 0, 1]
+)" + (both ? "[[constraints]]\nkind = 'angle'\nnodes = ['O', 'A', 'B']\naxis = [0, 0, 1]\n" : ""));
+    std::vector<double> found;
+    for (const Force& force : model->structure.forces)
+      if (force.kind == "bending") found.push_back(force.stiffness);
+    std::ranges::sort(found);
+    const double least = found.front();
+    for (double& x : found) x /= least;
+    return found;
+  };
+  const auto is = [](const std::vector<double>& found, const std::vector<double>& wanted) {
+    REQUIRE(found.size() == wanted.size());
+    for (std::size_t i = 0; i < found.size(); ++i) CHECK(found[i] == Approx(wanted[i]));
+  };
+  for (const char* nodes : {"'O', 'A'", "'A', 'O'"}) {
+    INFO(nodes);
+    is(couples(nodes, 4, false), {1, 1, 1.5});
+    is(couples(nodes, 4, true), {1, 1.5, 1.5});
+    is(couples(nodes, 3, true), {1, 1});
+  }
+}
+
 TEST_CASE("the name of a rod that was cut names all of its parts") {
   const auto warmed = [](const std::string& rods) {
     const Structure s = build_structure(read_scene_text(
