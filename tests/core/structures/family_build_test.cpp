@@ -36,6 +36,11 @@ TEST_CASE("every family says which mass matrix its rods have and how its nodes a
   CHECK(found > 0);
 }
 
+TEST_CASE("the joints of a chain are counted from its start") {
+  const Structure chain = family_structure("chain", {{"links", 7L}});
+  for (std::size_t i = 0; i < chain.nodes.size(); ++i) CHECK(chain.nodes[i].name == "J" + std::to_string(i));
+}
+
 TEST_CASE("the rods of a ladder have the mass and the length that are given") {
   const Structure ladder =
       family_structure("four_bar_ladder", {{"windows", 3L}, {"rod_length", 1.4}, {"rod_mass", 0.37}});
