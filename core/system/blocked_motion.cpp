@@ -155,7 +155,7 @@ std::string beyond_reach(const System& system, double t, double h, const ConstVe
 std::string held_at_second_order(const System& system, const ConstVec& q) {
   const Index n = system.coordinates(), m = system.all_constraints();
   const auto& rods = system.rod_rows();
-  if (n > most_coordinates || m == 0 || std::ranges::any_of(rods, [](int row) { return row < 0; })) return "";
+  if (n > most_coordinates || std::ranges::any_of(rods, [](int row) { return row < 0; })) return "";
   const MatrixXd G(system.all_jacobian(q));
   const MatrixXd V = column_complement(G.transpose(), 1e-9), Y = column_complement(G, 1e-9);
   constexpr Index most_free = 60;
@@ -197,7 +197,7 @@ std::string held_at_second_order(const System& system, const ConstVec& q) {
 bool of_no_branch(const System& system, const ConstVec& q, const ConstVec& v) {
   const Index m = system.all_constraints();
   const double speed = v.size() ? v.lpNorm<Eigen::Infinity>() : 0.0;
-  if (system.coordinates() > most_coordinates || m == 0 || !(speed > 0) || system.rheonomic()) return false;
+  if (system.coordinates() > most_coordinates || !(speed > 0) || system.rheonomic()) return false;
   const MatrixXd Y = column_complement(MatrixXd(system.all_jacobian(q)), 1e-9);
   if (Y.cols() == 0) return false;
   const double step = 1e-4 * size_of(system);

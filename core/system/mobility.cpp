@@ -171,7 +171,7 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
 
   const bool dense = G.cols() <= max_dense_coordinates;
   const MatrixXd full = dense ? MatrixXd(G) : MatrixXd();
-  const VectorXd values = dense && full.size() > 0 ? singular_values(full) : VectorXd();
+  const VectorXd values = singular_values(full);
   const std::vector<int> dependent = dense ? dependent_rows(full, values) : dependent_rows(G);
 
   mobility.rank = G.rows() - static_cast<Index>(dependent.size());

@@ -2,6 +2,7 @@
 // Rods that do not quite fit, and rods that warm.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
 
 #include "core/scene/library.hpp"
 #include "core/structure/node_positions.hpp"
@@ -41,6 +42,13 @@ std::string square(double error, const std::string& more = "", const std::string
   return out +
          "[[structure.constraints]]\nkind = 'plane'\nnodes = ['1', '2', '3', '4']\nnormal = [0, 0, 1]\n" +
          "[solver]\nstep = 1e-5\nend_time = 3e-5\n";
+}
+
+// What a note says that nodes were moved by at most.
+double moved_by(const std::string& note) {
+  const std::string mark = "nodes were moved by at most ";
+  const std::size_t at = note.find(mark);
+  return at == std::string::npos ? -1 : std::strtod(note.c_str() + at + mark.size(), nullptr);
 }
 
 VectorXd first_forces(const Simulation& run) {
@@ -364,6 +372,8 @@ end_time = 3e-5
 )");
     const double u = (l1 - l2) / (l1 + l2), wanted = stiff * ((1 + u) / l1 - 1);
     const VectorXd q = run.trajectory.node_positions(0), force = first_forces(run);
+    REQUIRE_FALSE(run.warnings.empty());
+    CHECK(moved_by(run.warnings.front()) == Approx(std::abs(u)).epsilon(1e-5));  // six digits
     // Rounding of coordinates, 1e-16, is 1e-12 of the strains.
     CHECK(q[3] == Approx(1 + u).epsilon(1e-14));
     CHECK(std::abs(q[6] - q[3] - 1) < 1e-15 * 4);
@@ -372,15 +382,19 @@ end_time = 3e-5
   }
 }
 
-// One side of the square is rigid and may turn: what bears on it is its own multiplier.
+// One side of the square, or two, are rigid and may turn: what bears on them is their own multipliers.
 TEST_CASE("assembly: a square of which one side is rigid is in balance") {
+  const bool two = GENERATE(false, true);
   std::string scene = square(1.3e-3, "rod_model = 'elastic'\n");
-  const std::string mark = "name = '12'\n";
-  scene.insert(scene.find(mark) + mark.size(), "elastic = false\n");
+  for (const char* side : {"12", "23"}) {
+    const std::string mark = "name = '" + std::string(side) + "'\n";
+    if (two || side[0] == '1') scene.insert(scene.find(mark) + mark.size(), "elastic = false\n");
+  }
   const Simulation run = run_scene(scene);
   REQUIRE(run.status == RunStatus::completed);
   const VectorXd q = run.trajectory.node_positions(0);
   CHECK(std::abs((q.segment<3>(3) - q.head<3>()).norm() - a) < 1e-15);
+  CHECK((std::abs((q.segment<3>(6) - q.segment<3>(3)).norm() - a) < 1e-15) == two);
   // Forces of 1e4 N that cancel to rounding move 3 kg by nothing in 3e-5 s; off by 1e-6 they would have
   // 1e-14.
   CHECK(std::abs(first_forces(run)[4]) > 1000);
@@ -391,13 +405,13 @@ TEST_CASE("assembly: a square of which one side is rigid is in balance") {
 // changes forces by E A 1e-7 = 0.1 N.
 TEST_CASE("temperature: rods that do not fit are joined cold, as those that do") {
   const auto forces = [](double length) {
-    return first_forces(run_scene(R"([structure]
+    const Simulation run = run_scene(R"([structure]
 kind = 'custom'
 rod_model = 'elastic'
 nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'P', position = [1, 0, 0], mass = 1},
          {name = 'B', position = [2, 0, 0], fixed = true}]
 rods = [{nodes = ['A', 'P'], mass = 0.1, area = 1e-4, youngs_modulus = 1e10, length = )" +
-                                  number(length) + R"(},
+                                     number(length) + R"(},
         {nodes = ['P', 'B'], mass = 0.1, area = 1e-4, youngs_modulus = 1e10}]
 [[constraints]]
 kind = 'line'
@@ -411,7 +425,10 @@ change = 100
 [solver]
 step = 1e-5
 end_time = 3e-5
-)"));
+)");
+    for (const std::string& warning : run.warnings)
+      CHECK(warning.find("no pose near the given one") == std::string::npos);
+    return first_forces(run);
   };
   const VectorXd fits = forces(1.0), off = forces(1.0 + 1e-7);
   CHECK(fits[0] == Approx(-1000).epsilon(1e-9));

@@ -247,6 +247,11 @@ TEST_CASE("what moves to second order is not said to be held") {
   CHECK(held_in(flat) == "");
   CHECK(held_in(in_line("0")) == "rod A-B, rod B-C");
   CHECK(held_in(in_line("0.02")) == "");
+  const auto loose =
+      model_of("[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [1, 2, 3], mass = 1}]\n");
+  const Vec3 speed(0.3, 0, -0.2);
+  CHECK(held_at_second_order(loose->system, node_positions(loose->structure)) == "");
+  CHECK_FALSE(of_no_branch(loose->system, node_positions(loose->structure), speed));
   // In line with a rod along both of them, wherever they float: the middle cannot leave the line of the ends.
   CHECK(
       held_in("[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0.2, 0.1, -0.3]}, "
