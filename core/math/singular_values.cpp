@@ -4,58 +4,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 namespace unfurl {
-namespace {
-
-// The matrix [0 B^T; B 0] of a bidiagonal B, reordered, is tridiagonal with a zero diagonal and these entries
-// beside it (Golub & Kahan 1965); its eigenvalues are plus and minus the singular values. Here by bisection
-// with Sturm counts (Golub & Van Loan, Matrix Computations, 8.4.1), which cannot fail to converge.
-class Bisection {
- public:
-  Bisection(const VectorXd& beside, Index n) : square_(beside.cwiseAbs2()), values_(n) {
-    const Index size = 2 * n;
-    double bound = 0;  // Gershgorin
-    for (Index i = 0; i < size; ++i)
-      bound = std::max(bound,
-                       (i > 0 ? std::abs(beside[i - 1]) : 0.0) + (i + 1 < size ? std::abs(beside[i]) : 0.0));
-    resolution_ = std::numeric_limits<double>::epsilon() * bound;
-    split(0.0, bound + resolution_, 0, n);
-  }
-  VectorXd descending() const { return values_.reverse(); }
-
- private:
-  // How many singular values are below x > 0.
-  Index below(double x) const {
-    Index count = 0;
-    double pivot = -x;
-    for (Index i = 0; i <= square_.size(); ++i) {
-      if (i > 0) pivot = -x - square_[i - 1] / pivot;
-      if (pivot == 0.0) pivot = -std::numeric_limits<double>::min();
-      if (pivot < 0) ++count;
-    }
-    return count - values_.size();  // all the negative eigenvalues are below x
-  }
-
-  // Values first..last-1, ascending, lie between lo and hi.
-  void split(double lo, double hi, Index first, Index last) {
-    if (first >= last) return;
-    const double middle = 0.5 * (lo + hi);
-    if (hi - lo <= resolution_ || middle <= lo || middle >= hi) {
-      values_.segment(first, last - first).setConstant(lo > 0 ? middle : 0.0);
-      return;
-    }
-    const Index left = std::clamp(below(middle), first, last);
-    split(lo, middle, first, left);
-    split(middle, hi, left, last);
-  }
-
-  VectorXd square_, values_;
-  double resolution_ = 0;
-};
-
-}  // namespace
-
 namespace {
 
 // A bidiagonal matrix with a on its diagonal and b beside it, a multiple `bound` of one whose singular values
@@ -161,7 +113,9 @@ VectorXd singular_values_of_bidiagonal(const VectorXd& entries, bool by_bisectio
     solver.computeFromTridiagonal(VectorXd::Zero(2 * n), entries, Eigen::EigenvaluesOnly);
     if (solver.info() == Eigen::Success) return solver.eigenvalues().tail(n).reverse().cwiseMax(0.0);
   }
-  return Bisection(entries, n).descending();
+  std::vector<Index> all(static_cast<std::size_t>(n));
+  std::iota(all.begin(), all.end(), Index{0});
+  return singular_values_at(entries, all);
 }
 
 }  // namespace unfurl
