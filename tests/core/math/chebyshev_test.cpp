@@ -45,4 +45,29 @@ TEST_CASE("a Chebyshev series is its function, with slope, divided difference an
         1e-12);
 }
 
+// Of some polynomial of each degree, whose last coefficient is as large as the others.
+TEST_CASE("the integral of a short Chebyshev series has it for its slope and begins at zero") {
+  for (Index n = 1; n < 8; ++n) {
+    INFO(n << " terms");
+    VectorXd c(n);
+    for (Index k = 0; k < n; ++k) c[k] = std::cos(0.7 + 1.3 * static_cast<double>(k)) + 1.9;
+    const VectorXd P = chebyshev_integral(c);
+    REQUIRE(P.size() == n + 1);
+    CHECK(std::abs(chebyshev_value(P.data(), P.size(), -1.0)) < 1e-14);
+    MatrixXd two(2, n);
+    two << c.transpose(), -2.1 * c.transpose();
+    for (const double x : {-0.83, 0.0, 0.41, 1.0}) {
+      const double value = chebyshev_value(c.data(), n, x);
+      double sum = 0;  // T_k = cos(k arccos x)
+      for (Index k = 0; k < n; ++k) sum += c[k] * std::cos(static_cast<double>(k) * std::acos(x));
+      CHECK(value == Approx(sum).epsilon(0).margin(1e-13));
+      CHECK(chebyshev_value_and_slope(P.data(), P.size(), x).slope == Approx(value).epsilon(0).margin(1e-13));
+      VectorXd out(2);
+      chebyshev_value(two, x, out);
+      CHECK(out[0] == Approx(value).epsilon(0).margin(1e-13));
+      CHECK(out[1] == Approx(-2.1 * value).epsilon(0).margin(1e-13));
+    }
+  }
+}
+
 }  // namespace chebyshev_test
