@@ -37,8 +37,7 @@ double proximal(const VectorXd& compliance) {
 SparseRows weights(const VectorXd& compliance) {
   const double p = proximal(compliance);
   SparseRows M(compliance.size(), compliance.size());
-  M.setIdentity();
-  for (Index i = 0; i < compliance.size(); ++i) M.coeffRef(i, i) = compliance[i] > 0 ? compliance[i] : p;
+  M = (compliance.array() > 0).select(compliance, p).matrix().asDiagonal();
   return M;
 }
 

@@ -96,4 +96,14 @@ TEST_CASE("sums over rows are determined where what rows have each is open") {
   CHECK(determined_sums(G, taken(1, 0, 1), Eigen::Vector3d(1, 0, 0)) == std::vector<char>{1, 1});
 }
 
+TEST_CASE("round-off of every row is left out by its own length") {
+  for (const double scale : {1.0, 1e-6, 3e8}) {
+    MatrixXd G(3, 3), clean(3, 3);
+    G << 1.7, 2e-12, 0.9, 1e-14, -2.3, 3e-11, 4e-11, 5e-12, 1.1;
+    clean << 1.7, 0, 0.9, 0, -2.3, 3e-11, 4e-11, 0, 1.1;
+    G.row(1) *= scale, clean.row(1) *= scale;
+    CHECK(MatrixXd(without_round_off_transposed(sparse_rows(G))) == clean.transpose());
+  }
+}
+
 }  // namespace determined_rows_test

@@ -3,6 +3,7 @@
 #include "core/math/factors.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <utility>
 
 using namespace unfurl;
@@ -25,4 +26,26 @@ TEST_CASE("factors of matrices without rows or columns are those of nothing") {
     CHECK(orthonormal_columns(A).cols() == columns);
   }
   CHECK(Cholesky(MatrixXd(0, 0)).solve(VectorXd(0)).size() == 0);
+}
+
+// 2 x 2: (a + d) / 2 -+ sqrt((a - d)^2 / 4 + b^2).
+TEST_CASE("eigenvalues of symmetric matrices are the closed form and ascend, with vectors or without") {
+  const double a = 1.7, b = -0.6, d = 0.4, middle = (a + d) / 2, off = std::hypot((a - d) / 2, b);
+  MatrixXd A(2, 2);
+  A << a, b, b, d;
+  const VectorXd alone = symmetric_eigenvalues(A);
+  const SymmetricEigen both = symmetric_eigen(A);
+  for (const VectorXd& values : {alone, both.values}) {
+    CHECK(values[0] == Approx(middle - off).epsilon(1e-14));
+    CHECK(values[1] == Approx(middle + off).epsilon(1e-14));
+  }
+  CHECK((A * both.vectors - both.vectors * both.values.asDiagonal()).norm() < 1e-15 * 4);
+}
+
+TEST_CASE("a rank goes by the share of the largest that counts") {
+  MatrixXd A = MatrixXd::Zero(3, 4);
+  A.diagonal() << 2.3, 1e-6, 1e-12;
+  CHECK(rank_of(A) == 3);
+  CHECK(rank_of(A, 1e-9) == 2);
+  CHECK(rank_of(A, 1e-4) == 1);
 }
