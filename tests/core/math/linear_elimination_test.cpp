@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
 
 #include "tests/support/sparse_rows.hpp"
 
@@ -89,6 +91,25 @@ TEST_CASE("rows are solved alike at any scale, few entries or many") {
   }
   // Threshold pivoting: no coordinate is solved for by less than half of its row's largest entry.
   CHECK(MatrixXd(one.B).cwiseAbs().maxCoeff() <= 3.5 + 1e-14);
+}
+
+// x_0 = x_1 + ... goes by x_0, and x_1 is held by it. A row of x_1 and c x_2 goes by x_2, which nothing
+// holds, if c is at least half of what x_1 has, else by x_1. A coordinate that must go is solved for by any
+// entry.
+TEST_CASE("a row is solved for what the fewest rows hold of its large entries") {
+  for (const double c : {0.6, -0.6, 0.4, -0.4})
+    for (const bool must_go : {false, true}) {
+      INFO(c << (must_go ? ", must go" : ""));
+      MatrixXd A(2, 3);
+      A << 2, -1, 0, 0, 1, c;
+      const Vec3 b(0.7, -1.3, 0);
+      const std::vector<char> must{0, 0, static_cast<char>(must_go ? 1 : 0)};
+      const LinearElimination e = eliminate_sparsely(sparse_rows(A), b.head<2>(), must, 100);
+      const bool by_third = must_go || std::abs(c) > 0.5;
+      CHECK(e.free_coordinates == std::vector<int>{by_third ? 1 : 2});
+      CHECK((A * e.q0 - b.head<2>()).norm() < 1e-15);
+      CHECK((A * MatrixXd(e.B)).norm() < 1e-15);
+    }
 }
 
 }  // namespace linear_elimination_test
