@@ -97,7 +97,7 @@ std::string misfit_warning(const System& system, const ConstVec& q) {
   if (misfit < worth_a_word) return "";
   const std::string found = "constraints of this structure follow from one another only to " +
                             rounded(misfit, 2) + " of their size";
-  if (misfit < rounding_of_rows(q))
+  if (misfit < rounding_of_rows(system, q))
     return found +
            ", which is what rounding its positions leaves so far from the origin; the motion is no better "
            "than "

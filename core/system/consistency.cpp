@@ -212,7 +212,7 @@ class Checker {
     std::ostringstream text;
     text << std::setprecision(2) << "they nearly leave one motion (all but " << smallest
          << " of their size): if it is meant to move, "
-         << (smallest < rounding_of_rows(q_)
+         << (smallest < rounding_of_rows(system_, q_)
                  ? "move it near the origin, from which it stands too far for the digits that a number has"
                  : "give its positions all 16 digits (an expression, \"=...\", has them)")
          << "; else ";

@@ -19,12 +19,13 @@ constexpr Index max_dense_coordinates = 900;
 
 }  // namespace
 
-double rounding_of_rows(const ConstVec& q) {
-  if (q.size() == 0) return 0;
-  const Eigen::Map<const Eigen::Matrix3Xd> x(q.data(), 3, q.size() / 3);
+double rounding_of_rows(const System& system, const ConstVec& q) {
+  const Index in_space = q.size() / 3 - std::ssize(system.ghosts());  // these come last, and are nowhere
+  if (in_space == 0) return 0;
+  const Eigen::Map<const Eigen::Matrix3Xd> x(q.data(), 3, in_space);
   const double extent = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff();
   constexpr double some = 8 * std::numeric_limits<double>::epsilon();
-  return extent > 0 ? some * q.lpNorm<Eigen::Infinity>() / extent : 0.0;
+  return extent > 0 ? some * x.lpNorm<Eigen::Infinity>() / extent : 0.0;
 }
 
 SparseRows unit_rows(const System& system, const ConstVec& q) {

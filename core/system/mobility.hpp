@@ -16,7 +16,7 @@ namespace unfurl {
 inline constexpr double dependent_row = 1e-11;
 // What rounding the coordinates leaves of it where the structure stands far from the origin, give or take:
 // the largest coordinate by the longest side of the box that holds the nodes.
-double rounding_of_rows(const ConstVec& q);
+double rounding_of_rows(const System& system, const ConstVec& q);
 
 struct Mobility {
   Index coordinates = 0;               // 3 n

@@ -151,9 +151,13 @@ TEST_CASE("how far rows follow from one another is told and what takes their dig
     CHECK(share_of(warning) > 1e-3 * std::pow(10, -decimals));
     CHECK(has(warning, "give them all 16 digits"));
   }
-  for (const double from : {-1.9e5, 4.4e6}) {
-    const std::string warning = warning_of(three_cranks(17, from));
-    CAPTURE(from, warning);
+  // Its rotor is a number, which lies nowhere.
+  const std::string rotor =
+      "[[forces]]\nkind = 'motor'\nnodes = ['A1', 'A0', 'B0']\naxis = [0, 1, 0]\nstall_torque = 1\n"
+      "no_load_speed = 60\ninertia = 0.02\n";
+  for (const auto& [from, more] : {std::pair(-1.9e5, std::string()), {4.4e6, ""}, {4.4e6, rotor}}) {
+    const std::string warning = warning_of(three_cranks(17, from) + more);
+    CAPTURE(from, more, warning);
     CHECK(share_of(warning) < 3.2 * 2e-16 * std::abs(from));
     CHECK(share_of(warning) > 0);
     CHECK(has(warning, "move the structure near the origin"));
