@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names in a MAT-file, read back with nothing but its specification (tests/support/check_exports.py has the
-// numbers read by Octave).
+// A MAT-file, read back with nothing but its specification (tests/support/check_exports.py has it read by
+// Octave).
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <map>
 #include <sstream>
 
@@ -64,6 +66,97 @@ std::map<std::string, std::vector<std::u16string>> names_in(const std::string& f
 }
 
 }  // namespace
+
+namespace {
+
+struct Numbers {
+  std::vector<std::int32_t> shape;
+  std::uint32_t kind = 0;  // 6: reals, 9 and 0x200: true or false
+  std::vector<double> values;
+};
+
+// Every array of numbers by its name, as it lies: column by column.
+std::map<std::string, Numbers> numbers_in(const std::string& file) {
+  std::map<std::string, Numbers> out;
+  for (const Element& array : elements(file, 128)) {
+    CHECK(array.type == 14);
+    const std::vector<Element> parts = elements(array.data);  // flags, shape, name, contents
+    if ((word(parts[0].data, 0) & 0xFFU) == 1) continue;      // cells
+    CHECK((parts[0].type == 6 && parts[1].type == 5 && parts[2].type == 1));
+    Numbers& found = out[parts[2].data];
+    found.kind = word(parts[0].data, 0);
+    for (std::size_t k = 0; k < parts[1].data.size(); k += 4)
+      found.shape.push_back(static_cast<std::int32_t>(word(parts[1].data, k)));
+    REQUIRE(parts.size() == 4);
+    if (parts[3].type == 9) {
+      found.values.resize(parts[3].data.size() / sizeof(double));
+      std::memcpy(found.values.data(), parts[3].data.data(), parts[3].data.size());
+    } else {
+      CHECK(parts[3].type == 2);
+      for (const char c : parts[3].data) found.values.push_back(c);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("numbers in a MAT-file are those of the run, column by column") {
+  const Simulation run = testing::run_scene(
+      "[structure]\nkind = 'hoop'\nmodel = 'sector'\nunits = 4\n[solver]\nstep = 0.02\nend_time = 0.1\n");
+  const Diagnostics d = diagnose(run);
+  const fs::path folder = fs::temp_directory_path() / ("unfurl_mat_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  find_export_format("mat")->write({run, d, folder, "numbers", 0.1, 1.0});
+  std::ostringstream file;
+  file << std::ifstream(folder / "run.mat", std::ios::binary).rdbuf();
+  fs::remove_all(folder);
+  CHECK(file.str().substr(124, 4) == std::string("\x00\x01IM", 4));
+  const auto found = numbers_in(file.str());
+  const Structure& structure = run.trajectory.structure();
+  const auto &time = found.at("t_s"), &x = found.at("positions_m"), &v = found.at("velocities_m_s"),
+             &force = found.at("axial_forces_N"), &unique = found.at("axial_forces_unique"),
+             &ends = found.at("rod_nodes"), &series = found.at("series");
+  const std::size_t steps = run.trajectory.size(), nodes = structure.node_copies.size(),
+                    rods = structure.rod_copies.size(), columns = d.columns.size();
+  const auto shape = [](std::initializer_list<std::size_t> sizes) {
+    return std::vector<std::int32_t>(sizes.begin(), sizes.end());
+  };
+  CHECK(time.shape == shape({steps, 1}));
+  for (const Numbers* array : {&x, &v}) CHECK(array->shape == shape({steps, nodes, 3}));
+  for (const Numbers* array : {&force, &unique}) CHECK(array->shape == shape({steps, rods}));
+  CHECK(ends.shape == shape({rods, 2}));
+  CHECK(series.shape == shape({steps, columns}));
+  for (const auto& [name, array] : found) {
+    INFO(name);
+    CHECK(array.kind == (name == "axial_forces_unique" ? 0x209U : 6U));
+    std::size_t size = 1;
+    for (const std::int32_t n : array.shape) size *= static_cast<std::size_t>(n);
+    REQUIRE(array.values.size() == size);
+  }
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  for (std::size_t i = 0; i < steps; ++i) {
+    CHECK(time.values[i] == run.trajectory.time(i));
+    const VectorXd q = run.trajectory.positions(i), w = run.trajectory.velocities(i);
+    for (std::size_t n = 0; n < nodes; ++n)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t at = i + steps * (n + nodes * k);
+        CHECK(x.values[at] == q[static_cast<Index>(3 * n + k)]);
+        CHECK(v.values[at] == w[static_cast<Index>(3 * n + k)]);
+      }
+    for (std::size_t r = 0; r < rods; ++r) {
+      const int source = structure.rod_copies[r].source;
+      CHECK(same(force.values[i + steps * r], d.axial_force(static_cast<Index>(i), source)));
+      CHECK(unique.values[i + steps * r] == (d.force_unique(static_cast<Index>(i), source) ? 1 : 0));
+    }
+    for (std::size_t c = 0; c < columns; ++c)
+      CHECK(same(series.values[i + steps * c], d.columns[c].values[i]));
+  }
+  for (std::size_t r = 0; r < rods; ++r) {
+    CHECK(ends.values[r] == structure.rod_copies[r].a + 1);
+    CHECK(ends.values[rods + r] == structure.rod_copies[r].b + 1);
+  }
+}
 
 TEST_CASE("names in a MAT-file are what the scene calls them, in whatever letters") {
   const Simulation run = testing::run_scene(R"(
