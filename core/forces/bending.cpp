@@ -89,7 +89,7 @@ class BendRate {
   static constexpr double smooth = 1e-6;  // e
   const Bend& bend_;
   Vec3 u1_, u2_, s_, rate_;
-  double g_ = 0, by_size_ = 0;
+  double g_, by_size_;
 };
 
 class Bending final : public ForceBlock {

@@ -62,9 +62,9 @@ class DryFriction final : public ForceBlock {
     return sum;
   }
   double taken(const Moment& at, const double* q) const override {
-    if (!takes_by_pose()) return 0.0;
     double sum = 0;
-    for (const Slipping& s : slipping_) sum += s.force * s.measure.value(q, near(s, at));
+    if (takes_by_pose())
+      for (const Slipping& s : slipping_) sum += s.force * s.measure.value(q, near(s, at));
     return sum;
   }
   bool by_tension() const override { return !by_rods_.empty(); }
@@ -90,15 +90,7 @@ class DryFriction final : public ForceBlock {
     VectorXd g;
     for (const Slipping& s : slipping_) {
       const double tau = goes_on(s, at, q, v, g) * force(s, loads);
-      const auto& stencil = s.measure.stencil();
-      const auto size = static_cast<Index>(stencil.size());
-      MatrixXd hess(size, size);
-      s.measure.hessian(q, hess.data());
-      for (Index j = 0; j < size; ++j)
-        for (Index i = 0; i < size; ++i)
-          if (hess(i, j) != 0.0)
-            by_q.emplace_back(stencil[static_cast<std::size_t>(i)], stencil[static_cast<std::size_t>(j)],
-                              -tau * hess(i, j));
+      s.measure.add_hessian(q, -tau, by_q);
     }
   }
 

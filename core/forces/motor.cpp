@@ -7,6 +7,7 @@
 
 #include "core/forces/spring.hpp"
 #include "core/structure/motion_params.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/structure/structure_error.hpp"
 
 namespace unfurl {
@@ -208,12 +209,10 @@ namespace {
 // How fast the nodes' own velocities turn the joint.
 double joint_rate(const Structure& structure, const Measure& joint) {
   const MeasureFunction measure(joint, structure.deployment);
-  const auto size = 3 * std::ssize(structure.nodes);
-  VectorXd q(size), v(size), gradient(std::ssize(measure.stencil()));
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i) {
-    q.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].position;
+  const VectorXd q = node_positions(structure);
+  VectorXd v(q.size()), gradient(std::ssize(measure.stencil()));
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
     v.segment<3>(3 * static_cast<Index>(i)) = structure.nodes[i].velocity;
-  }
   measure.value_and_gradient(q.data(), gradient.data());
   const double rate = measure.rate(gradient.data(), v.data());
   return std::isfinite(rate) ? rate : 0.0;

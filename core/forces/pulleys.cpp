@@ -42,7 +42,7 @@ std::vector<Pulleys::Pass> Pulleys::passes(const double* v, const double* gradie
   std::vector<Pass> out(spans_.size());
   double running = 0;  // u of the pulley before the span
   std::vector<double> x(spans_.size());
-  for (std::size_t i = spans_.size(); i-- > 1;) {
+  for (std::size_t i = spans_.size() - 1; i > 0; --i) {
     running -= spans_[i].length.rate(gradient + spans_[i].first, v);
     x[i] = running / creep_;
   }

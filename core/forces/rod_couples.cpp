@@ -143,10 +143,10 @@ bool RodCouples::holds_on_rod(const Structure& bare, const Constraint& c, bool c
          });
 }
 
-// Gives nodes of their own to the angles that R tells.
+// Gives nodes of their own to angles, and says which of them R tells.
 void RodCouples::tell(Measure& measure, Told& told) const {
   for (MeasureTerm& term : measure.terms) tell(term.measure, told);
-  if (measure.kind != MeasureKind::angle || !line_.tells(measure)) return;
+  if (measure.kind != MeasureKind::angle) return;
   const int first = nodes_ + static_cast<int>(told.nodes.size());
   for (const int from : {0, 2}) {
     if (!line_.tells(measure, static_cast<std::size_t>(from))) continue;

@@ -113,6 +113,12 @@ class Springs final : public ForceBlock {
       const double rate = spring.measure.rate(g.data(), v) - law.rest_rate;
       const double n = spring_pull(spring.law, law, s, rate).tension;
       const PullByLength pull = pull_of(spring.law, s - law.rest);
+      // Its drum's own, which the stretch pulls on where its damper lets nothing else pull.
+      if (law.drum >= 0 && !spring.law.slack) {
+        by_q.emplace_back(law.drum, law.drum, -law.by_drum_too * pull.energy);
+        for (std::size_t i = 0; i < stencil.size(); ++i)
+          by_q.emplace_back(law.drum, stencil[i], -law.by_drum * pull.elastic * g[static_cast<Index>(i)]);
+      }
       if (spring.law.one_sided && n == 0.0) continue;
       if (spring.pulleys)
         spring.pulleys->derivatives(q, v, n, by_q, by_v);
@@ -124,14 +130,9 @@ class Springs final : public ForceBlock {
       if (c > 0) spring.measure.add_hessian_times(q, v, c * pull.share, bend.data());
       const VectorXd along = g;  // of the rate; what pulls is weighed by the pulleys
       if (spring.pulleys) spring.pulleys->weigh(v, g.data());
-      if (law.drum >= 0) {
-        by_q.emplace_back(law.drum, law.drum, -law.by_drum_too * pull.energy);
-        for (std::size_t i = 0; i < stencil.size(); ++i) {
-          const auto k = static_cast<Index>(i);
-          by_q.emplace_back(stencil[i], law.drum, -law.by_drum * pull.elastic * g[k]);
-          by_q.emplace_back(law.drum, stencil[i], -law.by_drum * pull.elastic * along[k]);
-        }
-      }
+      if (law.drum >= 0)
+        for (std::size_t i = 0; i < stencil.size(); ++i)
+          by_q.emplace_back(stencil[i], law.drum, -law.by_drum * pull.elastic * g[static_cast<Index>(i)]);
       for (std::size_t j = 0; j < stencil.size(); ++j)
         for (std::size_t i = 0; i < stencil.size(); ++i) {
           const double gi = g[static_cast<Index>(i)], gj = along[static_cast<Index>(j)];

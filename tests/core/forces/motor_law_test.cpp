@@ -21,11 +21,11 @@ namespace {
 
 constexpr double t = 0.7;
 
-// On x of node a, behind a gear that turns the other way; its error is summed up in x of node d.
+// On x of node d, behind a gear that turns the other way; its error is summed up in x of node a.
 Force motor_with(Motor::Control control) {
   Force f;
   f.kind = "motor";
-  f.measure = {MeasureKind::coordinate, {0}, Vec3::UnitX(), 0.0, {}};
+  f.measure = {MeasureKind::coordinate, {3}, Vec3::UnitX(), 0.0, {}};
   Motor& m = f.motor;
   m.stall = 0.4, m.no_load_speed = 12, m.gear_ratio = -2.5, m.limit = 0.31;
   m.control = control;
@@ -33,7 +33,7 @@ Force motor_with(Motor::Control control) {
   m.command.offset = 0.3, m.command.rate = -0.2;
   if (control == Motor::Control::none) m.command = TimeFunction(), m.command.offset = -0.8;
   m.proportional = 0.9, m.integral = 0.35, m.derivative = control == Motor::Control::position ? 0.12 : 0.0;
-  if (control == Motor::Control::position) m.integrator = 3;
+  if (control == Motor::Control::position) m.integrator = 0;
   return f;
 }
 
@@ -65,13 +65,13 @@ TEST_CASE(
     int cut = 0, uncut = 0;
     for (int k = 0; k < 200; ++k) {
       VectorXd q = VectorXd::Zero(12), v = VectorXd::Zero(12);
-      q[0] = 2 * uniform(random), v[0] = 4 * uniform(random), q[9] = uniform(random), v[9] = uniform(random);
+      q[9] = 2 * uniform(random), v[9] = 4 * uniform(random), q[0] = uniform(random), v[0] = uniform(random);
       VectorXd g(static_cast<Index>(measure.stencil().size()));
       const MotorState s = motor_state(f, measure, -1, t, q.data(), v.data(), g.data());
       const auto effort = [&](double by_q, double by_v, double by_z) {
-        return effort_of(f.motor, q[0] + by_q, v[0] + by_v, q[9] + by_z);
+        return effort_of(f.motor, q[9] + by_q, v[9] + by_v, q[0] + by_z);
       };
-      CHECK((s.value == q[0] && s.rate == v[0]));
+      CHECK((s.value == q[9] && s.rate == v[9]));
       CHECK(s.effort == Approx(effort(0, 0, 0)).epsilon(0).margin(1e-14));
       // Its parts are linear: differences are right to round-off, and where they agree on both sides no bend
       // is near.
@@ -101,13 +101,13 @@ TEST_CASE("the part of a motor's law that holds is the one that has room, and no
     const MeasureFunction measure(f.measure, structure.deployment);
     for (int k = 0; k < 2000; ++k) {
       VectorXd q = VectorXd::Zero(12), v = VectorXd::Zero(12);
-      q[0] = 2 * uniform(random), v[0] = 6 * uniform(random), q[9] = uniform(random), v[9] = uniform(random);
+      q[9] = 2 * uniform(random), v[9] = 6 * uniform(random), q[0] = uniform(random), v[0] = uniform(random);
       VectorXd g(static_cast<Index>(measure.stencil().size()));
       const MotorRooms rooms = motor_rooms(f, measure, -1, t, q.data(), v.data(), g.data());
       const auto full = [&](double share) {
-        return m.stall * (share - m.gear_ratio * v[0] / m.no_load_speed);
+        return m.stall * (share - m.gear_ratio * v[9] / m.no_load_speed);
       };
-      const double torque = effort_of(m, q[0], v[0], q[9]) / m.gear_ratio;
+      const double torque = effort_of(m, q[9], v[9], q[0]) / m.gear_ratio;
       // But for the gear's rounding.
       const auto is = [&](double cut) { return std::abs(torque - cut) < 1e-14; };
       std::size_t part = 0;
@@ -169,8 +169,8 @@ TEST_CASE("a motor and the ghost of its controller: power and derivatives agree 
   Structure structure = testing::table_structure();
   structure.forces = {motor_with(Motor::Control::position)};
   structure.forces[0].motor.limit = 1e3, structure.forces[0].motor.stall = 1e3;
-  structure.forces[0].measure = {MeasureKind::length, {0, 1}, Vec3::Zero(), 0.0, {}};  // bends
-  structure.nodes[3].mass = 3e-6;
+  structure.forces[0].measure = {MeasureKind::length, {1, 3}, Vec3::Zero(), 0.0, {}};  // bends
+  structure.nodes[0].mass = 3e-6;
   const auto block = motor_block(structure, node_mass_matrix(structure));
   std::mt19937 random(12);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -182,15 +182,15 @@ TEST_CASE("a motor and the ghost of its controller: power and derivatives agree 
     block->add(t, at.data(), rate.data(), 1.0, f.data());
     return f;
   };
-  const Vec3 d = q.segment<3>(3) - q.segment<3>(0), w = v.segment<3>(3) - v.segment<3>(0);
+  const Vec3 d = q.segment<3>(9) - q.segment<3>(3), w = v.segment<3>(9) - v.segment<3>(3);
   const Vec3 along = d.normalized();
   const double rate = along.dot(w), command_rate = -0.2, mass = 3e-6;
-  const double effort = effort_of(structure.forces[0].motor, d.norm(), rate, q[9]);
+  const double effort = effort_of(structure.forces[0].motor, d.norm(), rate, q[0]);
   VectorXd wanted = VectorXd::Zero(12);
-  wanted.segment<3>(0) = -effort * along, wanted.segment<3>(3) = effort * along;
-  wanted[9] = mass * (command_rate - rate);
+  wanted.segment<3>(3) = -effort * along, wanted.segment<3>(9) = effort * along;
+  wanted[0] = mass * (command_rate - rate);
   CHECK((force(q, v) - wanted).cwiseAbs().maxCoeff() <= 1e-14);
-  CHECK(block->power(t, q.data(), v.data()) == Approx(wanted.head<9>().dot(v.head<9>())).epsilon(1e-13));
+  CHECK(block->power(t, q.data(), v.data()) == Approx(wanted.tail<9>().dot(v.tail<9>())).epsilon(1e-13));
   ForceDerivative by_q, by_v;
   block->derivatives(t, q.data(), v.data(), by_q, by_v);
   SparseRows K(12, 12), D(12, 12);
@@ -203,7 +203,7 @@ TEST_CASE("a motor and the ghost of its controller: power and derivatives agree 
                    c = (force(q, v + unit) - force(q, v - unit)) / (2 * h);
     for (Index r = 0; r < 12;
          ++r) {  // h^2 times third derivatives of order 10, 1e-16 / h; the ghost's by its mass
-      const double near = r == 9 ? mass * 1e-7 : 1e-8;
+      const double near = r == 0 ? mass * 1e-7 : 1e-8;
       CHECK(MatrixXd(K)(r, i) == Approx(k[r]).epsilon(0).margin(near));
       CHECK(MatrixXd(D)(r, i) == Approx(c[r]).epsilon(0).margin(near));
     }
