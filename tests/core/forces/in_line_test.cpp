@@ -7,6 +7,7 @@
 
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/diagnostics/reactions.hpp"
+#include "core/forces/friction.hpp"
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -132,6 +133,55 @@ end_time = 1
   CHECK(fine < coarse / 12);
   const Diagnostics d = diagnose(opened("step = 0.05\n"));
   CHECK(d.at("A.reaction_y_N").values.front() == Approx(pi).epsilon(1e-9));
+}
+
+// What slips against c = 0.7 N m or N in stages of a step on both sides of the pose in which rods come into
+// line, or nodes meet: it takes c times the rate at which they turn or pass, and turns with the same about
+// one axis.
+TEST_CASE("friction goes on against the motion through the pose in line and beside it") {
+  std::mt19937 dice(4);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Structure s;
+  s.nodes = {{"o", Vec3::Zero()}, {"a", Vec3(1.3, 0, 0)}, {"b", Vec3(0.7, 0.4, 0)}};
+  Force rubs;
+  rubs.kind = "friction";
+  rubs.kinetic = 0.7;
+  for (int trial = 0; trial < 12; ++trial)
+    for (const bool flat : {true, false})
+      for (const double beyond : {-5e-3, -1e-4, -1e-8, 0.0, 1e-8, 1e-4, 5e-3}) {
+        CAPTURE(trial, flat, beyond);
+        const Vec3 u = Vec3(any(dice), any(dice), any(dice)).normalized(),
+                   n = u.cross(Vec3(any(dice), any(dice), any(dice))).normalized(), across = n.cross(u);
+        const Vec3 o(any(dice), any(dice), any(dice)), drift(any(dice), any(dice), any(dice));
+        const double w = 1.9, turn = flat ? beyond : pi + beyond;  // from the way back to where it came from
+        const Vec3 out = -std::cos(turn) * u - std::sin(turn) * across,
+                   moves = std::sin(turn) * u - std::cos(turn) * across;
+        VectorXd q(9), v(9), f = VectorXd::Zero(9);
+        q << o, o + 1.3 * u, o + 1.3 * u + 0.6 * out;
+        v << drift, drift + 0.4 * 1.3 * across, drift + 0.4 * 1.3 * across + 0.6 * (0.4 + w) * moves;
+        rubs.measure = {MeasureKind::angle, {1, 0, 1, 2}, Vec3::Zero(), 0, {}};
+        rubs.slip = flat ? -1 : 1;  // the angle has fallen to 0 or grown to 180 degrees
+        s.forces = {rubs};
+        friction_block(s, {})->add(1.0, q.data(), v.data(), 1.0, f.data());
+        // 1e-12 of directions that two nodes next to a line tell.
+        CHECK((f.tail<3>() + 0.7 / 0.6 * moves).norm() < 1e-9);
+        CHECK((f.head<3>() + 0.7 / 1.3 * across).norm() < 1e-9);
+        CHECK(f.dot(v) == Approx(-0.7 * w).epsilon(1e-9));
+        CHECK(friction_block(s, {})->power(1.0, q.data(), v.data()) == Approx(-0.7 * w).epsilon(1e-9));
+      }
+  rubs.measure = {MeasureKind::length, {1, 2}, Vec3::Zero(), 0, {}};
+  rubs.slip = -1;  // they came nearer
+  s.forces = {rubs};
+  for (const double beyond : {-1e-3, -1e-8, 1e-8}) {
+    const Vec3 u(0.48, 0.6, 0.64), o(0.2, -0.3, 0.9), drift(0.3, 0.5, -0.2);
+    VectorXd q(9), v(9), f = VectorXd::Zero(9);
+    q << Vec3::Zero(), o, o + beyond * u;
+    v << Vec3::Zero(), drift, drift + 1.9 * u;
+    friction_block(s, {})->add(1.0, q.data(), v.data(), 1.0, f.data());
+    CHECK((f.tail<3>() + 0.7 * u).norm() < 1e-7);  // of 1e-16 m in 1e-8 m
+    CHECK((f.segment<3>(3) - 0.7 * u).norm() < 1e-7);
+    CHECK(friction_block(s, {})->power(1.0, q.data(), v.data()) == Approx(-0.7 * 1.9).epsilon(1e-7));
+  }
 }
 
 }  // namespace in_line_test

@@ -357,9 +357,9 @@ step = 0.01
 end_time = 1
 )toml";
 
-// Its rate after 1 s: the pin holds m / 2 + M s across, and along it m / 2 and what it holds of M s.
-double carried_to(double along) {
-  const double I = 1.0 / 3 + 0.8 * 0.36, across = 0.5 + 0.8 * 0.6, h = 1e-3;
+// Its rate after 1 s: the pin holds m / 2 and what it holds of M s, along the rod and across.
+double carried_to(double along, double across = 0.5 + 0.8 * 0.6) {
+  const double I = 1.0 / 3 + 0.8 * 0.36, h = 1e-3;
   const auto rate = [&](double w) {
     double a = 1 / I;
     for (int i = 0; i < 80; ++i) a = (1 - 0.1 * std::hypot(across * a, along * w * w)) / I;
@@ -393,9 +393,15 @@ TEST_CASE("a pin bears what a pin between its rod's ends and a slider on it put 
   // Order 8 in steps of 10 ms.
   const std::vector<std::string> one_rod = {"structure.rods=[{name='b', nodes=['H', 'B'], mass=1}]"};
   CHECK(rate(pinned, one_rod) == Approx(carried_to(0.5 + 0.48)).epsilon(1e-9));
-  // The other rod holds the slider from the pin, with a pin of its own.
-  CHECK(rate("[[constraints]]\nkind = \"collinear\"\nnodes = [\"H\", \"B\", \"X\"]\n") ==
-        Approx(carried_to(0.5)).epsilon(1e-9));
+  // The other rod holds the slider from the pin, with a pin of its own, however the line is told.
+  const auto in_line = [&](const std::string& nodes) {
+    return rate("[[constraints]]\nkind = \"collinear\"\nnodes = [" + nodes + "]\n");
+  };
+  for (const char* nodes : {"'H', 'B', 'X'", "'B', 'H', 'X'", "'X', 'B', 'H'", "'B', 'X', 'H'"})
+    CHECK(in_line(nodes) == Approx(carried_to(0.5)).epsilon(1e-9));
+  // On the line of the other rod, which takes M s^2 alpha over 1 m from B.
+  for (const char* nodes : {"'H', 'X', 'B'", "'X', 'H', 'B'"})
+    CHECK(in_line(nodes) == Approx(carried_to(0.5, 0.5 + 0.8 * 0.36)).epsilon(1e-9));
 }
 
 TEST_CASE("friction by the force of a pin is refused where the couples on its rod are left open") {

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/forces/friction.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/system/mass_matrix.hpp"
@@ -113,6 +114,66 @@ TEST_CASE("a pin pulls its rod with the rod's force along and with all couples a
     CHECK(loads.by_tension[3] == Approx(pull / F).epsilon(1e-11));
     CHECK(loads.by_tension[2] == 0.0);
     CHECK((loads.size[0] == 0.0 && loads.size[1] == 0.0));
+  }
+}
+
+// Newton's matrix of a pin's friction on a rod that gives, by differences: what it leaves out is mu r = 0.01
+// m over the rod's 1.3 m, twice as both nodes turn it; of 1e4 N/m, beside which differences are exact.
+TEST_CASE("the derivatives of a giving rod's pin friction are of its stretch") {
+  const auto model = model_of(pendulums, {"structure.damping_time=0.004"});
+  Structure structure = model->structure;
+  std::erase_if(structure.forces, [](const Force& f) { return f.name != "giving"; });
+  const SparseRows mass = node_mass_matrix(structure);
+  VectorXd q(27), v = VectorXd::Zero(27);
+  for (Index i = 0; i < 9; ++i) q.segment<3>(3 * i) = structure.nodes[static_cast<std::size_t>(i)].position;
+  v.segment<3>(24) << 0.3, 0, 0.4;
+  for (const int slip : {1, -1}) {
+    structure.forces[0].slip = slip;
+    const auto block = friction_block(structure, mass);
+    const auto force = [&](const Moment& at, const VectorXd& x, const VectorXd& w) {
+      VectorXd f = VectorXd::Zero(27);
+      block->add(at, x.data(), w.data(), 1.0, f.data());
+      return f;
+    };
+    ForceDerivative by_q, by_v, by_n;
+    block->derivatives(0.0, q.data(), v.data(), by_q, by_v);
+    MatrixXd K = MatrixXd::Zero(27, 27), D = K, found_K = K, found_D = K;
+    for (const auto& e : by_q) K(e.row(), e.col()) += e.value();
+    for (const auto& e : by_v) D(e.row(), e.col()) += e.value();
+    for (Index i = 0; i < 27; ++i) {
+      const VectorXd unit = 1e-7 * VectorXd::Unit(27, i);
+      found_K.col(i) = (force(0.0, q + unit, v) - force(0.0, q - unit, v)) / 2e-7;
+      found_D.col(i) = (force(0.0, q, v + unit) - force(0.0, q, v - unit)) / 2e-7;
+    }
+    CHECK(found_K.norm() > 50);  // k mu r / l of 1.5e4 N/m
+    CHECK(found_D.norm() > 0.2);
+    CHECK((K - found_K).norm() <= 0.03 * found_K.norm());
+    CHECK((D - found_D).norm() <= 0.03 * found_D.norm());
+    // By the force itself, of both rods that give; the load of the pin is linear in it but for its direction.
+    CHECK(block->by_tension());
+    std::vector<double> pull = {13.0, 41.0};
+    Moment at(0.0);
+    at.tension = pull.data();
+    block->tension_derivatives(at, q.data(), v.data(), by_n);
+    for (int rod = 0; rod < 2; ++rod) {
+      VectorXd told = VectorXd::Zero(27);
+      for (const auto& e : by_n)
+        if (e.col() == rod) told[e.row()] += e.value();
+      const auto with = [&](double by) {
+        pull[static_cast<std::size_t>(rod)] += by;
+        const VectorXd f = force(at, q, v);
+        pull[static_cast<std::size_t>(rod)] -= by;
+        return f;
+      };
+      const VectorXd found = (with(1e-3) - with(-1e-3)) / 2e-3;
+      CHECK((told - found).norm() <= 0.03 * 0.01);
+      CHECK((found.norm() > 0.005) == (rod == 1));
+      // At given forces no length says anything of them.
+      by_q.clear(), by_v.clear();
+      block->derivatives(at, q.data(), v.data(), by_q, by_v);
+      for (const auto& e : by_q) CHECK(std::abs(e.value()) < 10);  // mu r N / l^2
+      CHECK(by_v.empty());
+    }
   }
 }
 
