@@ -212,4 +212,129 @@ TEST_CASE("a damped joint acts on rods that carry it between their ends") {
   CHECK(one->structure.notes.size() + 1 == notes.size());
 }
 
+namespace {
+
+// Two rods from A in space, and what has forces, rows and ghosts of its own, in this order or another.
+const std::string linkage = R"(
+[structure]
+kind = "custom"
+nodes = [
+  {name = "A", position = [0, 0, 0], fixed = true}, {name = "G", position = [0.2, -1.1, 0.3], fixed = true},
+  {name = "B", position = [0.6, 0.8, 0.1], velocity = [0.8, -0.6, 0], mass = 0.7},
+  {name = "C", position = [1.5, 1.1, 0.5], velocity = [0, 0.4, 0.9], mass = 1.1},
+  {name = "P", position = [2, 2, 1], fixed = true}]
+rods = [{name = "a", nodes = ["A", "B"], mass = 0.9}, {name = "b", nodes = ["B", "C"], mass = 0.6}]
+[gravity]
+acceleration = [0.3, -0.4, -9.1]
+[solver]
+stages = 4
+step = 0.005
+end_time = 0.1
+)";
+
+std::vector<std::string> entries() {
+  return {R"(kind = "spring"
+nodes = ["P", "C"]
+stiffness = 43
+damping = 1.7
+free_length = 0.8)",
+          R"(kind = "torsion_spring"
+nodes = ["G", "A", "B"]
+axis = [0, 0, 1]
+stiffness = 7.1
+free_angle = 400)",
+          R"(kind = "motor"
+name = "one"
+nodes = ["G", "A", "B"]
+axis = [0, 0, 1]
+stall_torque = 2.9
+no_load_speed = 700
+gear_ratio = 1.3
+control = "position"
+proportional = 5.1
+integral = 31
+derivative = 0.3
+motion = "rate"
+rate = 37
+inertia = 0.17)",
+          R"(kind = "motor"
+name = "two"
+nodes = ["A", "B", "C"]
+axis = [0, 0.6, 0.8]
+stall_torque = 3.3
+no_load_speed = 500
+control = "position"
+proportional = 4.1
+integral = 23)",
+          R"(kind = "winch"
+name = "winch"
+nodes = ["P", "B"]
+stall_torque = 0.9
+no_load_speed = 900
+drum_radius = 0.07
+inertia = 0.002
+axial_stiffness = 310
+length = 1.7
+damping = 2.1)",
+          R"(kind = "cable"
+nodes = ["G", "B", "C"]
+axial_stiffness = 270
+length = 2.6
+motion = "rate"
+rate = -0.3)",
+          R"(kind = "combination"
+terms = ["1 length G C", "-0.6 angle A B C", "0.4 coordinate B along 0.6 0 0.8"]
+stiffness = 19
+free_value = 0.7)",
+          R"(kind = "drag"
+nodes = ["C"]
+damping = 0.9)",
+          R"(kind = "joint_damping"
+nodes = ["B"]
+damping = 0.23)",
+          R"(kind = "load_over_time"
+nodes = ["B"]
+force = [1.3, -2, 0.7]
+times = [0, 0.2]
+values = [1, 3])",
+          R"(kind = "follower"
+rod = "b"
+force = -3.1)",
+          R"(kind = "friction"
+nodes = ["A", "B", "C"]
+axis = [0.6, 0, 0.8]
+kinetic = 0.31)",
+          R"(kind = "offload"
+nodes = ["C"]
+length = 3)"};
+}
+
+}  // namespace
+
+TEST_CASE("the order in which forces are told changes no motion and no work") {
+  const auto run = [](const std::vector<std::string>& all) {
+    std::string text = linkage;
+    for (const std::string& entry : all) text += "[[forces]]\n" + entry + "\n";
+    return run_scene(text);
+  };
+  std::vector<std::string> all = entries();
+  const Simulation told = run(all);
+  INFO(told.message);
+  REQUIRE(told.status == RunStatus::completed);
+  std::ranges::reverse(all);
+  const Simulation reversed = run(all);
+  std::ranges::rotate(all, all.begin() + 5);
+  const Simulation rotated = run(all);
+  const Diagnostics d = diagnose(told);
+  CHECK(testing::largest(d, "energy_balance_J") < 1e-6);  // step^6, with rates of some 100 1/s
+  CHECK(std::abs(d.at("work_J").values.back()) > 0.1);
+  for (const Simulation* other : {&reversed, &rotated}) {
+    REQUIRE(other->status == RunStatus::completed);
+    // Round-off of 20 steps, and where the iteration of each ends.
+    CHECK((end_positions(*other) - end_positions(told)).head<15>().norm() < 1e-11);
+    for (const char* column : {"work_J", "dissipated_J", "potential_energy_J"})
+      CHECK(diagnose(*other).at(column).values.back() == Approx(d.at(column).values.back()).epsilon(1e-9));
+  }
+}
+
 }  // namespace force_sums_test
