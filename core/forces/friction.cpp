@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/constraints/linear_rows.hpp"
 #include "core/forces/pin_loads.hpp"
@@ -128,11 +129,11 @@ class DryFriction final : public ForceBlock {
                        })->rod;
       const Vec3 n =
           entry.value() / rod.compliance() * (node_vector(q, rod.b) - node_vector(q, rod.a)).normalized();
-      for (int k = 0; k < 3; ++k)
-        for (const int end : {-1, 1}) {
-          const int column = 3 * (end < 0 ? rod.a : rod.b) + k;
-          by_q.emplace_back(entry.row(), column, end * n[k]);
-          if (rod.damping_time > 0) by_v.emplace_back(entry.row(), column, end * rod.damping_time * n[k]);
+      for (const auto& [node, end] : {std::pair{rod.a, -1}, {rod.b, 1}})
+        for (int k = 0; k < 3; ++k) {
+          by_q.emplace_back(entry.row(), 3 * node + k, end * n[k]);
+          if (rod.damping_time > 0)
+            by_v.emplace_back(entry.row(), 3 * node + k, end * rod.damping_time * n[k]);
         }
     }
   }
