@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/forces/bending.hpp"
+#include "core/forces/latch_spring.hpp"
 #include "core/forces/motor.hpp"
 #include "core/forces/spring.hpp"
 #include "tests/support/table_structure.hpp"
@@ -112,6 +113,7 @@ std::vector<Variant> variants() {
           {"damped drum", cable({3, 1, 2}, 1.9, 0.5, 0)},
           {"slack drum", slack(cable({3, 1, 2}, 1.9, 0.5, 0))},
           {"rubbing drum", rubbing(cable({3, 1, 2}, 1.9, 0.5, 0), 7)},
+          {"another drum", cable({3, 0, 2}, 1.9, 0.5, 1)},
           {"many spans", cable(many, 2.1, 0.8)}};
 }
 
@@ -417,6 +419,46 @@ TEST_CASE("rods that bend with damping say of themselves what their force does")
     check_derivatives(*block, at);
     check_power(*block, at);
     CHECK(block->dissipation(t, at.q.data(), at.v.data()) < 0);
+  }
+}
+
+// k s + c s' along a linear form, of which a node that stands twice has both parts.
+TEST_CASE("a latch that gives pulls its form to zero and no other coordinate") {
+  Structure s = testing::table_structure();
+  const Vec3 a(0.4, 0, 0.9), b(-1.1, 0.2, 0.5), c(0.3, 0.6, -0.2);
+  for (const double damping : {0.0, 0.8}) {
+    Force latch;
+    latch.kind = "latch";
+    latch.stiffness = 2.3, latch.damping = damping;
+    latch.form = {{1, 2, 1}, {a, b, c}, 0.35};
+    Force other = latch;
+    other.damping = 0;
+    other.form = {{3}, {b}, -0.2};
+    s.forces = {latch, other};
+    const auto block = latch_spring_block(s, {});
+    std::mt19937 dice(15);
+    const State at = random_state(dice);
+    const Vec3 x = at.q.segment<3>(3), y = at.q.segment<3>(6), v = at.v.segment<3>(3), w = at.v.segment<3>(6);
+    const double value = (a + c).dot(x) + b.dot(y) + 0.35, rate = (a + c).dot(v) + b.dot(w);
+    const double second = b.dot(at.q.tail<3>()) - 0.2, pull = 2.3 * value + damping * rate;
+    VectorXd wanted(12);
+    wanted << Vec3::Zero(), -pull * (a + c), -pull * b, -2.3 * second * b;
+    CHECK((force_of(*block, at.q, at.v) - wanted).norm() <= 1e-14);
+    CHECK(block->potential(t, at.q.data()) ==
+          Approx(1.15 * (value * value + second * second)).epsilon(1e-14));
+    CHECK(block->power(t, at.q.data(), at.v.data()) == Approx(-damping * rate * rate).epsilon(1e-14));
+    CHECK(block->has_power() == (damping > 0));
+    check_derivatives(*block, at);
+    CHECK(latch_load(s, t, at.q, at.v) ==
+          Approx(std::max(std::abs(pull), 2.3 * std::abs(second))).epsilon(1e-14));
+    std::ranges::reverse(s.forces);
+    s.forces.push_back(straight(0.6, false));
+    s.forces.back().stiffness = 900;  // no latch
+    CHECK(latch_load(s, t, at.q, at.v) ==
+          Approx(std::max(std::abs(pull), 2.3 * std::abs(second))).epsilon(1e-14));
+    s.forces[0].form = {};  // of nothing yet: it waits
+    CHECK(latch_waits(s.forces[0]));
+    CHECK(latch_load(s, t, at.q, at.v) == Approx(std::abs(pull)).epsilon(1e-14));
   }
 }
 

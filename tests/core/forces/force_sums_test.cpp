@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/forces/damping.hpp"
 #include "core/scene/library.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/system/system.hpp"
@@ -210,6 +211,38 @@ TEST_CASE("a damped joint acts on rods that carry it between their ends") {
     return note.find("does nothing: no two rods meet at L0") != std::string::npos;
   }));
   CHECK(one->structure.notes.size() + 1 == notes.size());
+}
+
+// x_P = 0.4 x_A + 0.6 x_B, as rows that mix the coordinates, is a pin on A-B; what says anything else, or too
+// little, is none.
+TEST_CASE("rods meet at a pin between their ends where relations say that it is there") {
+  Structure s;
+  const Vec3 a(0.2, -0.4, 0.9), b(1.3, 0.8, 0.1), p = 0.4 * a + 0.6 * b;
+  s.nodes = {
+      {"A", a}, {"B", b}, {"P", p}, {"C", p + Vec3(0.3, -1, 0.6)}, {"D", p - 0.7 * Vec3(0.3, -1, 0.6)}};
+  s.rods = {
+      {"AB", 0, 1, 1.0, (b - a).norm(), "rod"}, {"CP", 3, 2, 1.0, 1.0, "rod"}, {"PD", 2, 4, 1.0, 1.0, "rod"}};
+  Mat3 mix;
+  mix << 1, 0.3, -0.2, 0.1, 0.9, 0.4, -0.5, 0.2, 1.3;
+  const auto lines = [&](double share_a, double share_b, int rows) {
+    s.constraints.clear();
+    for (int k = 0; k < rows; ++k) {
+      const Vec3 row = mix.row(k);
+      s.constraints.push_back(
+          {"relation", "pin", {0, 2, 1}, {-share_a * row, row, -share_b * row}, 0.0, {}, {}});
+    }
+    return rods_at_joint(s, 2);
+  };
+  const std::vector<RodAtJoint> all = lines(0.4, 0.6, 3);
+  REQUIRE(all.size() == 3);
+  CHECK((all[0].rod == 0 && all[0].from == 0 && all[0].to == 1));
+  CHECK((all[1].rod == 1 && all[1].from == 2 && all[1].to == 3));
+  CHECK((all[2].rod == 2 && all[2].from == 2 && all[2].to == 4));
+  CHECK(angles_at_joint(s, 2).size() == 3);
+  CHECK(lines(0.4, 0.6, 2).size() == 2);
+  CHECK(lines(0.6, 0.4, 3).size() == 2);
+  CHECK(lines(0, 0.6, 3).size() == 2);
+  CHECK(angles_at_joint(s, 2).size() == 1);
 }
 
 namespace {
