@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "core/forces/damping.hpp"
+#include "core/forces/offload.hpp"
+#include "core/forces/varying_loads.hpp"
 #include "core/scene/library.hpp"
 #include "core/structure/node_positions.hpp"
+#include "core/system/mass_matrix.hpp"
 #include "core/system/system.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/scene_run.hpp"
@@ -243,6 +247,90 @@ TEST_CASE("rods meet at a pin between their ends where relations say that it is 
   CHECK(lines(0.6, 0.4, 3).size() == 2);
   CHECK(lines(0, 0.6, 3).size() == 2);
   CHECK(angles_at_joint(s, 2).size() == 1);
+}
+
+// A-I-J-B is a rod of 1.2 kg cut in three, beside another one: what I and J weigh hangs on A and B by the
+// lever, or on ropes of their own, and a rope that is aside pulls back by its weight over its length.
+TEST_CASE("ropes carry their nodes, and what lies within a rod by the lever") {
+  Structure s;
+  s.nodes = {{"C", Vec3(0, 1, 2)},
+             {"A", Vec3(0.2, 0.1, 0.5), Vec3::Zero(), 0.3},
+             {"I", Vec3(0.6, 0.1, 0.5)},
+             {"J", Vec3(1, 0.1, 0.5)},
+             {"B", Vec3(1.4, 0.1, 0.5), Vec3::Zero(), 0.7}};
+  s.rods = {{"CA", 0, 1, 0.5, 1.0, "rod"}};
+  for (int k = 0; k < 3; ++k) {
+    s.rods.push_back({"AB", 1 + k, 2 + k, 0.4, 0.4, "rod"});
+    s.rods.back().parts = 3;
+  }
+  s.gravity = {1.2, -3, -9};
+  const double g = s.gravity.norm();
+  const Vec3 down = s.gravity / g;
+  std::vector<Force> ropes(3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    ropes[k].kind = "offload";
+    ropes[k].nodes = {std::vector{1, 4, 2}[k]};
+    ropes[k].rope = std::vector{2.5, 4.0, std::numeric_limits<double>::infinity()}[k];
+  }
+  ropes[1].trolley = Vec3(1.1, 0.4, 77);
+  for (const bool inner : {false, true}) {
+    s.forces = {ropes[0], ropes[1]};
+    if (inner) s.forces.push_back(ropes[2]);
+    const auto block = offload_block(s, node_mass_matrix(s));
+    VectorXd q(15), v = VectorXd::Zero(15), f = v, wanted = v;
+    for (Index i = 0; i < 15; ++i) q[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
+    block->add(0.3, q.data(), v.data(), 0.7, f.data());
+    const auto across = [&](const Vec3& x) -> Vec3 { return x - down.dot(x) * down; };
+    // Halves of rods at their ends; I and J have 0.4 kg each.
+    const double at_A = 0.3 + 0.25 + 0.2 + 0.4 / 3 + (inner ? 0 : 0.8 / 3), at_I = 0.4,
+                 at_B = 0.7 + 0.2 + 0.8 / 3 + (inner ? 0 : 0.4 / 3);
+    const Vec3 aside_A = across(q.segment<3>(3) - Vec3(0.2, 0.1, 0.5)),
+               aside_B = across(q.segment<3>(12) - Vec3(1.1, 0.4, 77));
+    wanted.segment<3>(3) = -at_A * (s.gravity + g / 2.5 * aside_A);
+    wanted.segment<3>(12) = -at_B * (s.gravity + g / 4 * aside_B);
+    if (inner) wanted.segment<3>(6) = -at_I * s.gravity;
+    CHECK((f - 0.7 * wanted).norm() <= 1e-13 * wanted.norm() + 1e-13 * 77 * g);
+    double energy = at_A * (s.gravity.dot(q.segment<3>(3)) + g / 5 * aside_A.squaredNorm()) +
+                    at_B * (s.gravity.dot(q.segment<3>(12)) + g / 8 * aside_B.squaredNorm());
+    if (inner) energy += at_I * s.gravity.dot(q.segment<3>(6));
+    CHECK(block->potential(0.3, q.data()) == Approx(energy).epsilon(1e-12));
+  }
+}
+
+// Of a rod that was cut the last two parts tell the tangent at its end, that of the parabola through their
+// nodes.
+TEST_CASE("a follower goes along its rod or along the tangent at the end of one that bends") {
+  const Vec3 c(0.4, -0.2, 0.9), d(0.3, 0.8, -0.1), e(-0.07, 0.05, 0.11);
+  const auto on = [&](double u) -> Vec3 { return c + u * d + u * u * e; };
+  Structure s;
+  s.nodes = {{"A", on(0)}, {"B", on(2)}, {"I", on(1)}};
+  VectorXd q(9), v(9);
+  q << on(0), on(2), on(1);
+  v << Vec3(0.1, 0.2, 0.3), Vec3(-0.4, 0.5, 0.9), Vec3(1, 2, 3);
+  for (const bool cut : {false, true}) {
+    Force follower;
+    follower.kind = "follower";
+    follower.nodes = cut ? std::vector{2, 1, 0} : std::vector{0, 1};
+    follower.size.kind = TimeFunction::Kind::rate;
+    follower.size.offset = 3, follower.size.rate = -8;
+    s.forces = {follower};
+    const auto block = follower_block(s, {});
+    VectorXd f = VectorXd::Zero(9), wanted = f;
+    block->add(0.6, q.data(), v.data(), 0.7, f.data());
+    wanted.segment<3>(3) = (3 - 8 * 0.6) * (cut ? Vec3(d + 4 * e) : Vec3(on(2) - on(0))).normalized();
+    CHECK((f - 0.7 * wanted).norm() <= 1e-14);
+    CHECK(block->power(0.6, q.data(), v.data()) == Approx(wanted.dot(v)).epsilon(1e-14));
+    ForceDerivative by_q, by_v;
+    block->derivatives(0.6, q.data(), v.data(), by_q, by_v);
+    MatrixXd K = MatrixXd::Zero(9, 9);
+    for (const auto& entry : by_q) K(entry.row(), entry.col()) += entry.value();
+    for (Index i = 0; i < 9; ++i) {  // 1e-10 and 1e-16 / 1e-5
+      VectorXd up = VectorXd::Zero(9), down = up;
+      block->add(0.6, VectorXd(q + 1e-5 * VectorXd::Unit(9, i)).data(), v.data(), 1.0, up.data());
+      block->add(0.6, VectorXd(q - 1e-5 * VectorXd::Unit(9, i)).data(), v.data(), 1.0, down.data());
+      CHECK(((up - down) / 2e-5 - K.col(i)).norm() <= 1e-8);
+    }
+  }
 }
 
 namespace {
