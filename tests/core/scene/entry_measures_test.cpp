@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What entries of a scene measure and hold, in poses in space, against the geometry written down.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "core/structure/measure.hpp"
+#include "core/structure/node_positions.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace entry_measures_test {
+
+namespace {
+
+Structure structure_of(const std::string& text) {
+  return build_structure(read_scene_text(text, "s.toml"));
+}
+
+const std::string nodes = R"(nodes = [
+  {name = "A", position = [0.6, 0.8, 0.1], mass = 1}, {name = "H", position = [0.1, -0.2, 0.3], mass = 1},
+  {name = "B", position = [-0.7, 0.5, 0.9], mass = 1}, {name = "C", position = [1.5, 1.1, -0.5], mass = 1},
+  {name = "K", position = [1.9, 0.2, 0.4], mass = 1}, {name = "D", position = [2.3, 1.2, 1.1], mass = 1}]
+)";
+
+Vec3 at(const VectorXd& q, int node) {
+  return q.segment<3>(3 * static_cast<Index>(node));
+}
+enum { A, H, B, C, K, D };
+
+// From a to b: without a sign, or about n.
+double between(const Vec3& a, const Vec3& b) {
+  return std::acos(a.dot(b) / (a.norm() * b.norm()));
+}
+double about(const Vec3& n, const Vec3& a, const Vec3& b) {
+  const Vec3 u = n.normalized(), p = a - u.dot(a) * u, r = b - u.dot(b) * u;
+  return std::atan2(u.dot(p.cross(r)), p.dot(r));
+}
+
+// Poses beside the one that is given: no angle turns by half a turn.
+VectorXd beside(const Structure& s, std::mt19937& dice) {
+  std::uniform_real_distribution<double> any(-0.1, 0.1);
+  VectorXd q = node_positions(s);
+  for (double& x : q) x += any(dice);
+  return q;
+}
+
+double value(const Structure& s, const Measure& measure, const VectorXd& q) {
+  return MeasureFunction(measure, s.deployment).value(q.data());
+}
+
+}  // namespace
+
+TEST_CASE("an angle of rods is that at the node which they share, whichever way each is told and cut") {
+  const std::string n = "[0.3, -0.5, 1.2]";
+  const Vec3 axis(0.3, -0.5, 1.2);
+  for (const bool cut : {false, true})
+    for (const auto& [first, second] : {std::pair{"'H', 'A'", "'H', 'B'"},
+                                        {"'A', 'H'", "'H', 'B'"},
+                                        {"'H', 'A'", "'B', 'H'"},
+                                        {"'A', 'H'", "'B', 'H'"}})
+      for (const bool sign : {false, true}) {
+        CAPTURE(cut, first, second, sign);
+        const std::string more = ", mass = 1, area = 1e-4}";
+        const Structure s = structure_of(
+            std::string("[structure]\nkind = 'custom'\n") +
+            (cut ? "youngs_modulus = 7e10\nsegments = 3\n" : "") + nodes + "rods = [{name = 'r', nodes = [" +
+            first + "]" + more + ", {name = 's', nodes = [" + second + "]" + more +
+            ", {name = 't', nodes = ['C', 'K']" + more + "]\n[[forces]]\nkind = 'torsion_spring'\n" +
+            "rods = ['r', 's']\nstiffness = 1\n" + (sign ? "axis = " + n : "") +
+            "\n[[forces]]\nkind = 'torsion_spring'\nrods = ['t', 'r']\nstiffness = 1\n");
+        const VectorXd q = node_positions(s);
+        const Vec3 a = at(q, A) - at(q, H), b = at(q, B) - at(q, H), t = at(q, K) - at(q, C);
+        const auto springs = [&] {
+          std::vector<const Force*> found;
+          for (const Force& f : s.forces)
+            if (f.kind == "torsion_spring") found.push_back(&f);
+          return found;
+        }();
+        REQUIRE(springs.size() == 2);
+        const double wanted = sign ? about(axis, a, b) : between(a, b);
+        CHECK(springs[0]->rest == Approx(wanted).epsilon(1e-12));
+        CHECK(value(s, springs[0]->measure, q) == Approx(wanted).epsilon(1e-12));
+        // No node is shared: from the first node of each to its second.
+        CHECK(springs[1]->rest == Approx(between(t, first[1] == 'H' ? a : Vec3(-a))).epsilon(1e-12));
+        CHECK(value(s, springs[1]->measure, q) == Approx(springs[1]->rest).epsilon(1e-12));
+        CHECK(springs[0]->measure.nodes.size() == (cut ? 6U : 4U));
+      }
+}
+
+TEST_CASE("gears, racks and telescopes hold the sums that are written down") {
+  const Structure s = structure_of("[structure]\nkind = 'custom'\n" + nodes + R"(
+[[constraints]]
+kind = "gear"
+nodes = ["A", "H", "B", "C", "K", "D"]
+radii = [0.7, -1.9]
+axis = [0.3, -0.5, 1.2]
+second_axis = [1, 0.2, 0.1]
+[[constraints]]
+kind = "gear"
+nodes = ["A", "H", "B", "C", "K", "D"]
+radii = [0.7, -1.9]
+axis = [0.3, -0.5, 1.2]
+[[constraints]]
+kind = "rack"
+nodes = ["A", "H", "B", "K", "D"]
+radius = -0.4
+direction = [2, -3, 6]
+axis = [0.3, -0.5, 1.2]
+[[constraints]]
+kind = "rack"
+nodes = ["A", "H", "B", "D"]
+radius = 0.3
+direction = [2, -3, 6]
+[[constraints]]
+kind = "telescope"
+nodes = ["A", "H", "B", "C"]
+shares = [0.5, 2, 3]
+motion = "rate"
+rate = 0.3
+start = 1
+[[constraints]]
+kind = "combination"
+terms = ["2.5 length A B", "-0.7 coordinate C along 0 3 4", "coordinate H K along 1 0 0", "0.4 angle A H B"]
+motion = "rate"
+rate = -0.2
+)");
+  std::mt19937 dice(16);
+  const VectorXd start = node_positions(s);
+  std::vector<const Constraint*> sums, lines;
+  for (const Constraint& c : s.constraints) {
+    if (c.kind == "measure") sums.push_back(&c);
+    if (c.kind == "collinear") lines.push_back(&c);
+  }
+  REQUIRE(sums.size() == 8);
+  const Vec3 n(0.3, -0.5, 1.2), m(1, 0.2, 0.1), d = Vec3(2, -3, 6) / 7;
+  const auto all = [&](const VectorXd& q) {
+    const auto way = [&](int i, int k) { return Vec3(at(q, k) - at(q, i)); };
+    const Vec3 a = way(H, A), b = way(H, B), c = way(K, C), e = way(K, D);
+    const double l1 = way(A, H).norm(), l2 = way(H, B).norm(), l3 = way(B, C).norm();
+    VectorXd out(8);
+    out << about(n, a, b) - 1.9 / 0.7 * about(m, c, e), about(n, a, b) - 1.9 / 0.7 * about(n, c, e),
+        d.dot(e) + 0.4 * about(n, a, b), d.dot(at(q, D)) - 0.3 * between(a, b), l1 - 0.5 / 2 * l2,
+        l2 - 2.0 / 3 * l3, l1 + l2 + l3,
+        2.5 * way(A, B).norm() - 0.7 * Vec3(0, 0.6, 0.8).dot(at(q, C)) + way(H, K)[0] + 0.4 * between(a, b);
+    return out;
+  };
+  for (int k = 0; k < 5; ++k) {
+    const VectorXd q = beside(s, dice), wanted = all(q), first = all(start);
+    for (std::size_t i = 0; i < 8; ++i) {
+      CAPTURE(i);
+      const auto row = static_cast<Index>(i);
+      CHECK(value(s, sums[i]->measure, q) == Approx(wanted[row]).epsilon(0).margin(1e-12));
+      const double moved = i == 6 ? 0.3 * 1.5 : i == 7 ? -0.2 * 2.5 : 0;
+      CHECK(sums[i]->target(2.5) == Approx(first[row] + moved).epsilon(0).margin(1e-12));
+    }
+  }
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0]->nodes == std::vector<int>{A, C, H});
+  CHECK(lines[1]->nodes == std::vector<int>{A, C, B});
+}
+
+TEST_CASE("mirrors, equal coordinates and relations hold where the geometry says, and nowhere else") {
+  const Structure s = structure_of("[structure]\nkind = 'custom'\n" + nodes + R"(
+[[constraints]]
+kind = "mirror"
+nodes = ["A", "B"]
+normal = [2, -3, 6]
+point = [0.3, 0.4, -0.2]
+[[constraints]]
+kind = "equal"
+nodes = ["C", "K", "D"]
+direction = [2, -3, 6]
+[[constraints]]
+kind = "relation"
+nodes = ["H", "C"]
+coefficients = [0.3, -0.4, 1.1, 2, 0.6, -0.8]
+[[constraints]]
+kind = "relation"
+nodes = ["D"]
+coefficients = [0.3, -0.4, 1.1]
+value = 0.9
+)");
+  const Vec3 n = Vec3(2, -3, 6) / 7, p(0.3, 0.4, -0.2), u(0.3, -0.4, 1.1), w(2, 0.6, -0.8);
+  std::mt19937 dice(17);
+  REQUIRE(s.constraints.size() == 7);
+  const VectorXd start = node_positions(s);
+  for (int k = 0; k < 5; ++k) {
+    const VectorXd q = beside(s, dice);
+    const auto off = [&](std::size_t row) {
+      const Constraint& c = s.constraints[row];
+      double sum = -c.value;
+      for (std::size_t i = 0; i < c.nodes.size(); ++i) sum += c.vectors[i].dot(at(q, c.nodes[i]));
+      return sum;
+    };
+    const Vec3 a = at(q, A), image = a - 2 * n.dot(a - p) * n;
+    for (std::size_t i = 0; i < 3; ++i)
+      CHECK(off(i) ==
+            Approx(at(q, B)[static_cast<Index>(i)] - image[static_cast<Index>(i)]).epsilon(0).margin(1e-14));
+    CHECK(off(3) == Approx(n.dot(at(q, K) - at(q, C))).epsilon(0).margin(1e-14));
+    CHECK(off(4) == Approx(n.dot(at(q, D) - at(q, C))).epsilon(0).margin(1e-14));
+    const double moved = u.dot(at(q, H) - at(start, H)) + w.dot(at(q, C) - at(start, C));
+    CHECK(off(5) == Approx(moved).epsilon(0).margin(1e-14));
+    CHECK(off(6) == Approx(u.dot(at(q, D)) - 0.9).epsilon(0).margin(1e-14));
+  }
+}
+
+}  // namespace entry_measures_test
