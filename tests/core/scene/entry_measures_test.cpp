@@ -8,6 +8,7 @@
 
 #include "core/structure/measure.hpp"
 #include "core/structure/node_positions.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -206,6 +207,124 @@ value = 0.9
     CHECK(off(5) == Approx(moved).epsilon(0).margin(1e-14));
     CHECK(off(6) == Approx(u.dot(at(q, D)) - 0.9).epsilon(0).margin(1e-14));
   }
+}
+
+namespace {
+
+std::string triple(const Vec3& x) {
+  return "[" + testing::number(x[0]) + ", " + testing::number(x[1]) + ", " + testing::number(x[2]) + "]";
+}
+
+}  // namespace
+
+// O-A-B in a plane that is not through the origin, Q beside it: planes on A and B say that it is flat, no
+// more, while nothing acts across.
+TEST_CASE("planes are no supports while nothing pushes the structure out of them") {
+  const Vec3 n = Vec3(2, -3, 6) / 7, u = Vec3(3, 2, 0).normalized(), w = n.cross(u), p(0.3, 0.4, -0.2);
+  const std::string across = triple(u + 0.2 * n), within = triple(0.3 * u - w), skew = triple(n + 0.5 * u);
+  const auto flat = [&](const std::string& entry, const std::string& planes = "'A', 'B'") {
+    const Structure s = structure_of(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = " + triple(p) +
+        ", fixed = true}, {name = 'A', position = " + triple(p + 0.8 * u + 0.3 * w) +
+        ", mass = 1}, {name = 'B', position = " + triple(p + 1.5 * u - 0.4 * w) +
+        ", mass = 2}, {name = 'Q', position = " + triple(p + 0.4 * u + 0.7 * n) +
+        ", fixed = true}]\nrods = [{nodes = ['O', 'A'], mass = 1}, {nodes = ['A', 'B'], mass = 1}]\n" +
+        "[[constraints]]\nkind = 'plane'\nnodes = [" + planes + "]\nnormal = " + triple(-0.4 * n) + "\n" +
+        entry);
+    int said = 0, all = 0;
+    for (const Constraint& c : s.constraints)
+      if (c.kind == "plane") ++all, said += c.symmetry;
+    CHECK((said == 0 || said == all));
+    return said > 0;
+  };
+  const auto force = [](const std::string& kind, const std::string& rest) {
+    return "[[forces]]\nkind = '" + kind + "'\n" + rest + "\n";
+  };
+  const auto row = [](const std::string& kind, const std::string& rest) {
+    return "[[constraints]]\nkind = '" + kind + "'\n" + rest + "\n";
+  };
+  const std::string to_Q = "[deployment]\nmeasure = 'length Q B'\ndeployed = 1.6\n",
+                    to_O = "[deployment]\nmeasure = 'length O B'\ndeployed = 1.3\n",
+                    latch = "[solver]\nat_deployed = 'latch'\n";
+  for (const std::string& inside :
+       {std::string(), "[gravity]\nacceleration = " + within + "\n",
+        "[[loads]]\nnodes = ['B']\nforce = " + within + "\n",
+        force("spring", "nodes = ['O', 'B']\nstiffness = 1"),
+        force("torsion_spring", "nodes = ['O', 'A', 'B']\nstiffness = 1"),
+        force("torsion_spring", "nodes = ['O', 'A', 'B']\nstiffness = 1\naxis = " + triple(-3 * n)),
+        force("combination", "stiffness = 1\nterms = ['1 length O B', '2 angle O A B']"),
+        row("length_stop", "nodes = ['O', 'B']\nmin = 0.1"),
+        row("coordinate_stop", "nodes = ['B']\nmin = -9\ndirection = " + within),
+        row("length", "nodes = ['O', 'B']"), to_Q, to_O, to_O + latch}) {
+    INFO(inside);
+    CHECK(flat(inside));
+  }
+  for (const std::string& out :
+       {"[gravity]\nacceleration = " + across + "\n", "[[loads]]\nnodes = ['B']\nforce = " + across + "\n",
+        force("load_over_time", "nodes = ['B']\nforce = " + within),
+        force("spring", "nodes = ['Q', 'B']\nstiffness = 1"),
+        force("torsion_spring", "nodes = ['O', 'A', 'B']\nstiffness = 1\naxis = " + skew),
+        force("combination", "stiffness = 1\nterms = ['1 length O B', '2 length Q A']"),
+        row("length_stop", "nodes = ['Q', 'B']\nmin = 0.1"),
+        row("coordinate_stop", "nodes = ['B']\nmin = -9\ndirection = " + across),
+        row("length", "nodes = ['Q', 'B']"),
+        row("relation", "nodes = ['Q', 'B']\ncoefficients = [1, 2, 3, 4, 5, 6]"), to_Q + latch}) {
+    INFO(out);
+    CHECK_FALSE(flat(out));
+  }
+  CHECK_FALSE(flat("", "'A'"));
+}
+
+TEST_CASE("stops have the limits, rebounds and speeds of their entries, in their unit") {
+  const Structure s = structure_of("[structure]\nkind = 'custom'\n" + nodes + R"(
+[[constraints]]
+kind = "length_stop"
+nodes = ["A", "B"]
+min = 0.2
+max = 7.5
+restitution = 0.3
+rest_speed = 0.04
+[[constraints]]
+kind = "angle_stop"
+nodes = ["A", "H", "B"]
+axis = [0.3, -0.5, 1.2]
+min = -170
+max = 175
+restitution = 0.4
+rest_speed = 5
+[[constraints]]
+kind = "clearance"
+nodes = ["C", "K"]
+clearance = 3.5
+restitution = 0.6
+rest_speed = 0.07
+)");
+  REQUIRE(s.stops.size() == 3);
+  const double degree = pi / 180;
+  CHECK((s.stops[0].min == 0.2 && s.stops[0].max == 7.5 && s.stops[2].max == 3.5));
+  CHECK(s.stops[1].min == Approx(-170 * degree).epsilon(1e-15));
+  CHECK(s.stops[1].max == Approx(175 * degree).epsilon(1e-15));
+  CHECK((s.stops[0].restitution == 0.3 && s.stops[1].restitution == 0.4 && s.stops[2].restitution == 0.6));
+  CHECK((s.stops[0].rest_speed == 0.04 && s.stops[2].rest_speed == 0.07));
+  CHECK(s.stops[1].rest_speed == Approx(5 * degree).epsilon(1e-15));
+  CHECK(std::isinf(s.stops[2].min));
+}
+
+TEST_CASE("what is wrong with rods and their material is said at its key") {
+  const std::string two = "[structure]\nkind = 'custom'\n" + nodes;
+  CHECK_THAT(testing::error_of(two + "rods = [{nodes = ['A', 'H'], mass = 1, masss = 2}]\n"),
+             Catch::Contains("structure.rods[0].masss"));
+  CHECK_THAT(
+      testing::error_of(two + "rods = [{nodes = ['A', 'H'], mass = 1, area = 1e-4}]\n"
+                              "rod_model = 'elastic'\nyoungs_modulus = 1e9\ndamping_time = 0.1\n"
+                              "damping_ratio = 0.2\n"),
+      Catch::Contains("s.toml:10:16: structure.damping_time: give damping_ratio or damping_time, not both"));
+  CHECK_THAT(testing::error_of(two + "[[constraints]]\nkind = 'gear'\nnodes = ['A', 'H', 'B', 'C', 'K']\n"
+                                     "radii = [1, 2]\n"),
+             Catch::Contains("must be six"));
+  CHECK_THAT(testing::error_of(two + "[[constraints]]\nkind = 'rack'\nnodes = ['A', 'H', 'B']\nradius = 1\n"
+                                     "direction = [1, 0, 0]\n"),
+             Catch::Contains("must be A, HINGE, B"));
 }
 
 }  // namespace entry_measures_test

@@ -3,6 +3,7 @@
 #include "core/scene/import_scene.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -116,6 +117,32 @@ std::string with(std::string text, const std::string& from, const std::string& t
 }
 
 }  // namespace
+
+// The third node is in line with the first two: the fourth holds the plane, wherever the shape stands.
+TEST_CASE("an OBJ file of lines is held at three nodes out of line, along them and across") {
+  const std::vector<Vec3> shape = {{0.1, 0.2, 0.3}, {1.3, 0.8, 0.9}, {2.5, 1.4, 1.5}, {0.7, 2.1, -0.4}};
+  for (const Vec3& shift : {Vec3(0, 0, 0), Vec3(5, -3, 2)}) {
+    std::string text;
+    for (const Vec3& x : shape)
+      text += "v " + number(x[0] + shift[0]) + " " + number(x[1] + shift[1]) + " " + number(x[2] + shift[2]) +
+              "\n";
+    const ImportedScene scene = imported(text + "l 1 2\nl 2 3\nl 3 4\nl 1 4\nl 2 4\n", "lines.obj");
+    CAPTURE(scene.text);
+    const Structure s = build_structure(read_scene_text(scene.text, "lines.toml"));
+    const auto held = [&](const char* kind) -> const Constraint& {
+      const auto it = std::ranges::find(s.constraints, kind, &Constraint::kind);
+      REQUIRE(it != s.constraints.end());
+      return *it;
+    };
+    const Vec3 along = (shape[1] - shape[0]).normalized(), n = along.cross(shape[3] - shape[0]).normalized();
+    CHECK(held("fixed").nodes == std::vector{0});
+    CHECK(held("line").nodes == std::vector{1});
+    CHECK(held("plane").nodes == std::vector{3});
+    // Of a difference of coordinates up to 8 m.
+    CHECK(held("line").vectors[0].cross(along).norm() < 1e-14);
+    CHECK(held("plane").vectors[0].cross(n).norm() < 1e-14);
+  }
+}
 
 TEST_CASE("a Miura vertex of a FOLD file can move in one way and no row of it is redundant") {
   for (const bool triangles : {false, true}) {

@@ -186,6 +186,9 @@ TEST_CASE("mistakes in variables and repeats have a place") {
       mistakes(with(polygon, "\"P{i}\"\n", "\"P{i\"\n"))
           .find("polygon.toml:8:8: structure.nodes[0].name: a brace stands alone in 'P{i'; write it twice") ==
       0);
+  for (const char* alone : {"P}{i}", "{i}}P", "P}"})
+    CHECK(mistakes(with(polygon, "\"P{i}\"\n", '"' + std::string(alone) + "\"\n"))
+              .find("a brace stands alone in '" + std::string(alone)) != std::string::npos);
   CHECK(mistakes(with(polygon, "{i = \"0:n\"}", "\"0:n\""))
             .find("polygon.toml:7:10: structure.nodes[0].repeat: must be a table such as {i = \"0:n\"}") ==
         0);
