@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 
+#include "core/scene/surfaces.hpp"
 #include "core/structure/measure.hpp"
 #include "core/structure/node_positions.hpp"
 #include "tests/support/number.hpp"
@@ -207,6 +209,63 @@ value = 0.9
     CHECK(off(5) == Approx(moved).epsilon(0).margin(1e-14));
     CHECK(off(6) == Approx(u.dot(at(q, D)) - 0.9).epsilon(0).margin(1e-14));
   }
+}
+
+// From 0 at the pose that is given to 1 at the deployed value, in the measure's unit and on the turn that is
+// told.
+TEST_CASE("a deployment is told by its measure from the stowed value to the deployed one") {
+  const Vec3 n(0.3, -0.5, 1.2);
+  const Structure bare = structure_of("[structure]\nkind = 'custom'\n" + nodes);
+  const VectorXd q = node_positions(bare);
+  const Vec3 a = at(q, A) - at(q, H), b = at(q, B) - at(q, H);
+  const double degree = pi / 180, angle = about(n, a, b), length = (at(q, C) - at(q, A)).norm();
+  const auto deployment = [&](const std::string& measure, double deployed, double stowed) {
+    return structure_of("[structure]\nkind = 'custom'\n" + nodes + "[deployment]\nmeasure = '" + measure +
+                        "'\ndeployed = " + testing::number(deployed) +
+                        (std::isnan(stowed) ? "" : "\nstowed = " + testing::number(stowed)) + "\n")
+        .deployment;
+  };
+  const double as_built = std::numeric_limits<double>::quiet_NaN();
+  const std::string turn = "angle A H B about 0.3 -0.5 1.2";
+  for (const double rounds : {0.0, 1.0, -2.0}) {
+    const double stowed = angle / degree + 360 * rounds - 20, deployed = stowed + 130;
+    const Deployment d = deployment(turn, deployed, stowed);
+    CHECK(d.measured);
+    CHECK(d.measure.kind == MeasureKind::angle);
+    CHECK(d.stowed == Approx(stowed * degree).epsilon(1e-14));
+    CHECK(d.deployed == Approx(deployed * degree).epsilon(1e-14));
+    CHECK(d.measure.reference == Approx(angle + 2 * pi * rounds).epsilon(1e-12));
+    CHECK(d.fraction(q, d.first_angles()) == Approx(20.0 / 130).epsilon(1e-10));
+  }
+  const Deployment built = deployment(turn, angle / degree - 90, as_built);
+  CHECK(built.stowed == Approx(angle).epsilon(1e-12));
+  CHECK(built.fraction(q, built.first_angles()) == Approx(0).epsilon(0).margin(1e-12));
+  const Deployment stretch = deployment("length A C", length + 0.6, length - 0.2),
+                   twice = deployment("2 length A C", 2 * length + 1.2, 2 * length - 0.4),
+                   sum = deployment("0.5 angle A H B", 0.5 * between(a, b) / degree + 30, as_built);
+  CHECK(stretch.measure.kind == MeasureKind::length);
+  CHECK(twice.measure.kind == MeasureKind::combination);
+  CHECK(stretch.fraction(q) == Approx(0.25).epsilon(1e-12));
+  CHECK(twice.fraction(q) == Approx(0.25).epsilon(1e-12));
+  CHECK(sum.stowed == Approx(0.5 * between(a, b)).epsilon(1e-12));
+  CHECK(sum.deployed - sum.stowed == Approx(30 * degree).epsilon(1e-12));
+}
+
+TEST_CASE("a surface keeps what its entry says of it") {
+  ParamSet values(surface_params());
+  values.set("kind", std::string("net"));
+  values.set("shape", std::string("paraboloid"));
+  values.set("focal_ratio", 0.7);
+  values.set("cells", 13L);
+  values.set("opacity", 0.37);
+  values.set("enabled", false);
+  for (const SceneSurface& s :
+       {scene_surface(values), scene_surface(surface_values(scene_surface(values)))}) {
+    CHECK((s.kind == "net" && s.shape == "paraboloid"));
+    CHECK((s.focal_ratio == 0.7 && s.cells == 13 && s.opacity == 0.37 && !s.enabled));
+  }
+  values.set("kind", std::string("paraboloid")), values.set("shape", std::string("flat"));
+  CHECK(scene_surface(values).shape == "paraboloid");
 }
 
 namespace {
