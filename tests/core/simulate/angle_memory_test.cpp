@@ -205,4 +205,41 @@ TEST_CASE("the fold angle counts on behind the deployed pose") {
   CHECK(*std::min_element(fold.begin(), fold.end()) < -pi);
 }
 
+// What is held is let go by the torque of all turns: a load across the rod grows by 3.1 N/s from t = 3 s on,
+// until it outweighs the spring, or with it what friction holds.
+TEST_CASE("what rests bears the turns of the spring that pulls at it") {
+  const double k = 1.3, omega = std::sqrt(k / inertia), rate = 6, slope = 3.1;
+  const auto back = [&](double angle) {
+    std::ostringstream text;
+    text.precision(17);
+    text << "[[forces]]\nkind = \"load_over_time\"\nnodes = [\"A\"]\nforce = [" << std::sin(angle) << ", "
+         << -std::cos(angle) << ", 0]\ntimes = [0, 3, 13]\nvalues = [0, 0, " << 10 * slope << "]\n";
+    return text.str();
+  };
+  const auto last = [](const Simulation& run) {
+    REQUIRE(run.status == RunStatus::completed);
+    REQUIRE(!run.events.empty());
+    return run.events.back();
+  };
+  // On a stop at 700 degrees, 300 short of the spring's free angle.
+  const Simulation stopped =
+      run_scene(rod(25, rate, spring(1000, k) + stop("max = 700\n", 0) + back(700 * degree)),
+                {"solver.stages=5", "solver.step=0.02", "solver.end_time=5"});
+  CHECK(last(stopped).name == "leaves stop end");
+  CHECK(last(stopped).t == Approx(3 + k * 300 * degree / (2 * slope)).epsilon(1e-8));
+  // By friction, where u = phi - free + 5 / k, which swings about zero, is largest: some 500 degrees.
+  const double u = -15 * degree + 5 / k, far = std::hypot(u, rate / omega), wound = far - 5 / k;
+  const Simulation stuck = run_scene(
+      rod(25, rate,
+          spring(40, k) + back(40 * degree + wound) +
+              "[[forces]]\nkind = \"friction\"\nname = \"pin\"\nnodes = [\"P\", \"O\", \"A\"]\naxis = [0, "
+              "0, 1]\nkinetic = 5\nstatic = 21\n"),
+      {"solver.stages=5", "solver.step=0.02", "solver.end_time=6"});
+  REQUIRE(stuck.events.size() == 2);
+  CHECK(stuck.events[0].kind == "stick");
+  CHECK(stuck.events[0].t == Approx(std::atan2(rate / omega, u) / omega).epsilon(1e-8));
+  CHECK(last(stuck).kind == "slip");
+  CHECK(last(stuck).t == Approx(3 + (21 - k * wound) / (2 * slope)).epsilon(1e-8));
+}
+
 }  // namespace angle_memory_test
