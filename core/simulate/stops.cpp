@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/constraints/linear_rows.hpp"
-#include "core/math/saddle_solver.hpp"
 
 namespace unfurl {
 namespace {
@@ -64,31 +62,6 @@ double Stops::gap_rate(std::size_t i, const System& system, const State& state) 
   double rate = 0;
   gap(i, state, q, v, rate);
   return rate;
-}
-
-double Stops::rebound(std::size_t i, const System& system, State& state) const {
-  const StopSide& stop = stops_[i];
-  VectorXd q(system.coordinates()), n = VectorXd::Zero(q.size()), n_z(state.z.size());
-  system.expand(state.z, q);
-  const auto& stencil = stop.function.stencil();
-  VectorXd gradient(static_cast<Index>(stencil.size()));
-  stop.function.value_and_gradient(q.data(), gradient.data());
-  for (std::size_t k = 0; k < stencil.size(); ++k)
-    n[stencil[k]] += stop.sign * gradient[static_cast<Index>(k)];
-  system.reduce_force(n, n_z);
-  if (n_z.size() == 0) return std::numeric_limits<double>::quiet_NaN();  // nothing can move
-  SparseRows G = system.jacobian_pattern();
-  std::vector<double> scratch;
-  system.jacobian(q, G, scratch);
-  SaddleSolver saddle(system.mass(), G);
-  if (!saddle.factorise(G)) return std::numeric_limits<double>::quiet_NaN();
-  VectorXd response(n_z.size()), mu(system.constraints());
-  saddle.solve(n_z, VectorXd::Zero(mu.size()), response, mu);
-  const double a = n_z.dot(response), free = n_z.cwiseAbs2().maxCoeff() / system.mass().diagonal().maxCoeff();
-  if (!(a > 1e-12 * free)) return std::numeric_limits<double>::quiet_NaN();
-  const double approach = -n_z.dot(state.w) + stop.sign * stop.rate(state.t);
-  state.w += (1 + stop.restitution) * approach / a * response;
-  return (1 - stop.restitution * stop.restitution) * approach * approach / (2 * a);
 }
 
 void Stops::stop_reels(double t) {

@@ -61,9 +61,6 @@ class Stops {
   double touching() const { return of_length_; }
   double touching(const MeasureFunction& s) const { return s.is_angle() ? of_angle : of_length_; }
 
-  // Turn the approach of stop i round; the energy lost [J]. NaN: the stop cannot be moved by any impulse.
-  double rebound(std::size_t i, const System& system, State& state) const;
-
   void stop_reels(double t);  // at their lengths then
   // These stops become constraints, the last ones of the structure, in their order.
   void hold(const std::set<std::size_t>& held, Structure& structure) const;
