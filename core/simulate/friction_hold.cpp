@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/math/box_complementarity.hpp"
 
@@ -27,20 +26,26 @@ void collect(const MatrixXd& linked, Index held, std::vector<Index>& all, std::v
     }
 }
 
-// The largest t for which t l = A x has an x with |x| <= tau. Where t is too large, what the nearest x in the
-// box leaves, r = t l - A x, is normal to a plane that bounds all A x: r . A x <= sum tau_j |a_j . r|, where
-// t is tried next. The bounds are faces of a polytope, so that this ends.
+// The largest t for which t l = A x has an x with |x| <= tau, or x >= 0 where tau has no bound. Where t is
+// too large, what the nearest x of those leaves, r = t l - A x, is normal to a plane that bounds all A x: r .
+// A x <= sum tau_j |a_j . r| over the bounded ones, where t is tried next. The bounds are faces of a
+// polyhedron, so that this ends. What needs no friction counts as held up to far beyond all friction.
 double most(const MatrixXd& A, const VectorXd& l, const VectorXd& tau) {
-  VectorXd r = l;
-  double t = std::numeric_limits<double>::infinity();
+  constexpr double far = 100;
+  const VectorXd bounded = tau.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; }), low = -bounded;
+  const double size = l.lpNorm<Eigen::Infinity>();
+  const auto bound = [&](const VectorXd& r) {
+    return (A.transpose() * r).cwiseAbs().dot(bounded) / l.dot(r);
+  };
+  double t = tau.allFinite() ? bound(l) : far * bounded.sum() / size;
   for (;;) {
-    const double next = (A.transpose() * r).cwiseAbs().dot(tau) / l.dot(r);
+    const auto nearest = solve_box(A.transpose() * A, -t * (A.transpose() * l), low, tau);
+    if (!nearest) return t;
+    const VectorXd r = t * l - A * nearest->x;
+    if (r.lpNorm<Eigen::Infinity>() <= met * t * size) return t;
+    const double next = bound(r);
     if (!(next < t)) return t;
     t = next;
-    const auto nearest = solve_box(A.transpose() * A, -t * (A.transpose() * l), -tau, tau);
-    if (!nearest) return t;
-    r = t * l - A * nearest->x;
-    if (r.lpNorm<Eigen::Infinity>() <= met * t * l.lpNorm<Eigen::Infinity>()) return t;
   }
 }
 
@@ -65,7 +70,7 @@ std::vector<FrictionHold> friction_holds(const MatrixXd& c, const VectorXd& lamb
     tau << tau_held(hold.held), tau_resting(resting);
     const VectorXd l = lambda(hold.held);
     hold.load = l.lpNorm<Eigen::Infinity>();
-    if (rows == 1)
+    if (rows == 1 && tau.allFinite())
       hold.capacity = A.row(0).cwiseAbs().dot(tau);
     else
       hold.capacity = hold.load > 0 ? most(A, l, tau) * hold.load : tau.sum();

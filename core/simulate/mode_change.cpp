@@ -11,6 +11,7 @@
 
 #include "core/math/box_complementarity.hpp"
 #include "core/math/factors.hpp"
+#include "core/simulate/acting.hpp"
 #include "core/simulate/impact.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/push_responses.hpp"
@@ -50,7 +51,7 @@ class Change {
     turn_laws(laws);
     find_rows();
     if (rows_.empty()) return std::move(out_);
-    std::optional<Acting> acting(std::in_place, *this);
+    std::optional<Acting> acting(std::in_place, sides_, base_, out_.state, rows_, later_);
     const PushResponses& responses = acting->responses;
     if (!responses.ok()) return failed("the constraint matrix cannot be factorised where modes change");
     D_ = responses.matrix();
@@ -68,7 +69,8 @@ class Change {
     for (std::size_t known = 0;; known = ended.size()) {
       if (!strike(responses, end)) return std::move(out_);
       // What is asked of motors and how cables are stretched may have jumped with the rates.
-      if (!out_.impacts.empty() && turn_laws(sides_.laws_left(system_, out_.state))) acting.emplace(*this);
+      if (!out_.impacts.empty() && turn_laws(sides_.laws_left(system_, out_.state)))
+        acting.emplace(sides_, base_, out_.state, rows_, later_);
       if (!choose(acting->responses)) return std::move(out_);
       for (Index r = 0; r < count(); ++r)
         if (series_ends(r, solution_.w[r]) && series_ends(r, without_rates(acting->responses, r)))
@@ -82,22 +84,6 @@ class Change {
   }
 
  private:
-  // What acts in the state, cables and motors by their present laws, and what pushes do there.
-  struct Acting {
-    explicit Acting(const Change& c)
-        : model(c.sides_.without_holds(c.base_)),
-          system(model.system.at(c.out_.state)),
-          responses(system, c.out_.state) {
-      for (const std::size_t i : c.rows_)
-        if (responses.ok())
-          responses.add(c.sides_.measure(i), c.sides_.sign(i), c.sides_.near(i, c.out_.state),
-                        {c.sides_.limit_motion(i, c.out_.state.t).rate,
-                         c.sides_.limit_motion(i, c.out_.state.t + c.later_).acceleration});
-    }
-    const Model model;
-    const System system;
-    PushResponses responses;
-  };
   bool turn_laws(const std::vector<std::size_t>& laws) {
     for (const std::size_t i : laws) sides_.turn_law(i, system_, out_.state), tell(i);
     return !laws.empty();
@@ -322,14 +308,16 @@ class Change {
 
   // Frictions that hold together let go together: all whose force is at its limit, and they alone.
   void let_go(std::vector<Index>& leaving) const {
-    const auto at_limit = [&](Index r) {
-      return sides_.is_friction(side(r)) && rests_[static_cast<std::size_t>(r)] &&
-             std::abs(solution_.x[r]) >= (1 - 1e-6) * sides_.holding(side(r));
-    };
-    if (std::none_of(leaving.begin(), leaving.end(), at_limit)) return;
+    if (std::ranges::none_of(leaving, [this](Index r) { return at_limit(r); })) return;
     std::erase_if(leaving, [&](Index r) { return sides_.is_friction(side(r)); });
     for (Index r = 0; r < count(); ++r)
       if (at_limit(r)) leaving.push_back(r);
+  }
+
+  // Friction that rests and bears all that it can.
+  bool at_limit(Index r) const {
+    return sides_.is_friction(side(r)) && rests_[static_cast<std::size_t>(r)] &&
+           std::abs(solution_.x[r]) >= (1 - 1e-6) * sides_.holding(side(r));
   }
 
   void slide(Index r, int sense) {
@@ -369,8 +357,9 @@ class Change {
       bool any = false;
       for (Index r = 0; r < count(); ++r) {
         if (!rests_[static_cast<std::size_t>(r)] || !sides_.is_friction(side(r))) continue;
-        if (solution_.held[static_cast<std::size_t>(r)] || std::abs(solution_.w[r]) <= zero_acceleration(r))
-          continue;
+        const bool held = solution_.held[static_cast<std::size_t>(r)];
+        if (!at_limit(r)) solution_.w[r] = 0;  // to what solve_box takes as nothing
+        if (held || std::abs(solution_.w[r]) <= zero_acceleration(r)) continue;
         slide(r, solution_.w[r] > 0 ? 1 : -1);
         any = true;
       }
@@ -395,6 +384,8 @@ class Change {
   // Rows that rest without a force are held too, where they are independent of the others; before them
   // friction that bears something, be it at its limit.
   void hold_resting() {
+    for (Index r = 0; r < count(); ++r)
+      if (crossed(r) && at_limit(r)) give_way(r);
     std::vector<Index> order(static_cast<std::size_t>(count()));
     std::iota(order.begin(), order.end(), Index{0});
     std::stable_partition(order.begin(), order.end(),
@@ -406,6 +397,22 @@ class Change {
         solution_.held[k] = true;
       else if (sides_.is_stop(side(r)))
         take_over(r);
+    }
+  }
+
+  // Friction that bears all that it can leaves its place to a stop that is in its way.
+  void give_way(Index r) {
+    std::vector<bool> held = solution_.held;
+    held[static_cast<std::size_t>(r)] = false;
+    const VectorXd pushed = D_ * past_held(D_, held, r) * solution_.x[r];
+    for (Index i = 0; i < count(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double zero = zero_acceleration(i);
+      if (!sides_.is_stop(side(i)) || !rests_[k] || held[k] || solution_.w[i] > zero || !(pushed[i] > zero) ||
+          !independent(D_, held, i))
+        continue;
+      held[k] = true;
+      return std::swap(solution_.held, held);
     }
   }
 
@@ -452,21 +459,14 @@ class Change {
 
   // By D c = d over what is held, stops among it.
   void share() {
-    const auto first = static_cast<Index>(sides_.first_friction()),
-               n = static_cast<Index>(sides_.first_motor()) - first;
-    std::vector<Index> held;
-    for (Index r = 0; r < count(); ++r)
-      if (rests_[static_cast<std::size_t>(r)] && solution_.held[static_cast<std::size_t>(r)])
-        held.push_back(r);
+    const auto n = static_cast<Index>(sides_.first_motor());
     MatrixXd c = MatrixXd::Zero(n, n);
-    const Cholesky all(D_(held, held));
-    for (Index r = 0; r < count() && !held.empty(); ++r) {
+    for (Index r = 0; r < count(); ++r) {
       const std::size_t i = side(r);
       if (!sides_.is_friction(i) || sides_.active(i) || sides_.slip(i) != 0) continue;
-      const VectorXd shares = all.solve(VectorXd(D_(held, r)));
-      for (std::size_t k = 0; k < held.size(); ++k)
-        if (const std::size_t by = side(held[k]); sides_.is_friction(by))
-          c(static_cast<Index>(i) - first, static_cast<Index>(by) - first) = shares[static_cast<Index>(k)];
+      const VectorXd d = past_held(D_, solution_.held, r);
+      for (Index k = 0; k < count(); ++k)
+        if (k != r) c(static_cast<Index>(i), static_cast<Index>(side(k))) = -d[k];
     }
     sides_.set_shares(std::move(c));
   }

@@ -77,7 +77,7 @@ OneSided::OneSided(const Structure& structure, const SolverOptions& options)
   active_.assign(first_motor() + motors_.size(), false);
   shift_.setZero(static_cast<Index>(stops_.size()));
   let_go_.setConstant(shift_.size(), unknown);
-  friction_force_.setZero(std::ssize(frictions_));
+  held_force_.setZero(static_cast<Index>(first_motor()));
 }
 
 bool OneSided::any_active() const {
@@ -286,8 +286,7 @@ MotorRooms OneSided::rooms(const Drive& motor, const VectorXd& q, const VectorXd
   gradient_.resize(static_cast<Index>(motor.measure.stencil().size()));
   Moment at(state.t);
   at.since = state.t;
-  if (state.angles.size() > 0)
-    at.angles = at.rates = state.angles.data();  // no time has passed: no rate counts
+  at.angles = at.rates = state.angles.data();  // no time has passed: no rate counts
   return motor_rooms(motor.law, motor.measure, motor.followed, at, q.data(), v.data(), gradient_.data());
 }
 
@@ -349,13 +348,14 @@ void OneSided::measure_held(const Model& model, const State& state, Probe& probe
     const auto row = static_cast<Index>(i);
     const double push = stops_.push(i, model, held, with_forces);
     probe.margins[row] = push / zero, probe.forces[row] = std::abs(push);
+    held_force_[row] = push * (measure(i).is_angle() ? row_arm(model.structure, stops_[i].measure) : 1.0);
   }
   // What sticks lies before the stops that are held, in its order.
   auto constraint = static_cast<int>(std::ssize(model.structure.constraints) - std::ssize(held));
   for (std::size_t i = first_motor(); i-- > first_friction();)
     if (active_[i])
-      friction_force_[static_cast<Index>(i - first_friction())] =
-          with_forces.lambda[model.system.constraint_row(--constraint)] * friction(i).row;
+      held_force_[static_cast<Index>(i)] =
+          -with_forces.lambda[model.system.constraint_row(--constraint)] * friction(i).row;
   measure_sticking(zero, probe);
 }
 
@@ -373,20 +373,21 @@ bool OneSided::leaves(std::size_t i, const Model& model, const State& state, dou
   return away.size() == 1 && passed < away[0] * since * since && 4 * rate > away[0] * since;
 }
 
-// Of frictions that stick, those that are held and those that rest by them.
+// Of frictions that stick: those that are held, by stops too, and those that rest by them.
 void OneSided::measure_sticking(double zero, Probe& probe) {
   std::vector<Index> held, resting;
-  VectorXd tau(std::ssize(frictions_));
-  for (Index k = 0; k < tau.size(); ++k) {
-    const std::size_t i = first_friction() + static_cast<std::size_t>(k);
-    tau[k] = holding(i);
-    if (active_[i]) held.push_back(k);
-    if (!active_[i] && slip(i) == 0 && shares_.rows() > 0) resting.push_back(k);
+  VectorXd tau = VectorXd::Constant(held_force_.size(), std::numeric_limits<double>::infinity());
+  for (Index i = 0; i < tau.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (is_friction(k)) tau[i] = holding(k);
+    if ((is_stop(k) || is_friction(k)) && active_[k]) held.push_back(i);
+    if (is_friction(k) && !active_[k] && slip(k) == 0 && shares_.rows() > 0) resting.push_back(i);
   }
   const MatrixXd shares = resting.empty() ? MatrixXd(0, std::ssize(held)) : MatrixXd(shares_(resting, held));
-  for (const FrictionHold& hold : friction_holds(shares, friction_force_(held), tau(held), tau(resting)))
+  for (const FrictionHold& hold : friction_holds(shares, held_force_(held), tau(held), tau(resting)))
     for (const Index k : hold.held) {
-      const Index i = static_cast<Index>(first_friction()) + held[static_cast<std::size_t>(k)];
+      const Index i = held[static_cast<std::size_t>(k)];
+      if (!is_friction(static_cast<std::size_t>(i))) continue;
       const double arm = friction(static_cast<std::size_t>(i)).row;
       probe.margins[i] = (hold.capacity - hold.load) / std::max(zero * arm, force_zero * hold.capacity);
     }
@@ -409,10 +410,10 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
   const auto count = static_cast<Index>(active_.size()), stops = static_cast<Index>(stops_.size());
   probe.margins = probe.rates = VectorXd::Constant(count, unknown);
   probe.forces.setZero(count);
-  const auto frictions = active_.begin() + static_cast<std::ptrdiff_t>(first_friction());
-  const bool sticks =
-      std::find(frictions, frictions + std::ssize(frictions_), true) - frictions < std::ssize(frictions_);
-  if (forces && (any_held() || sticks)) measure_held(model, state, probe);
+  bool holds = false;
+  for (std::size_t k = 0; k < active_.size(); ++k)
+    holds = holds || (active_[k] && (is_stop(k) || is_friction(k)));
+  if (forces && holds) measure_held(model, state, probe);
   VectorXd q(system.coordinates()), v(q.size());
   system.expand(state.z, q);
   system.expand_rate(state.w, v);
@@ -427,11 +428,11 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
       probe.margins[i] = law_margin(k, state, q, v, probe.rates[i]);
       continue;
     }
-    double rate = 0;
+    double& rate = probe.rates[i];
     const double gap = stops_.gap(k, state, q, v, rate) - shift_[i];
     probe.margins[i] = gap / touching(k);
-    probe.rates[i] = rate / touching(k);
     if (probe.margins[i] < -1 && leaves(k, model, state, -gap, rate)) probe.margins[i] = -0.5;
+    rate /= touching(k);
   }
 }
 

@@ -103,7 +103,7 @@ class OneSided {
   bool comes_to_zero(std::size_t i, const System& system, const State& state) const;
   void stand(std::size_t i) { active_[i] = false, frictions_[i - first_friction()].slip = 0; }
   void stick(std::size_t i, const System& system, const State& state);
-  // Of those that stand by those that stick: c_ji of friction_hold.hpp, frictions by frictions.
+  // Of frictions that stand by stops and frictions that hold: c_ji of friction_hold.hpp, sides by sides.
   void set_shares(MatrixXd c) { shares_ = std::move(c); }
   // What counts as zero, of what a stop or friction acts along and of its rates: what comes to a zero length,
   // or angle, in a step. Of accelerations nothing does but what rounding leaves of what they are the sum of.
@@ -207,7 +207,7 @@ class OneSided {
   VectorXd shift_;        // of the stops' gaps [m] or [rad]
   VectorXd let_go_;       // when a stop was that has no room yet; NaN: none such
   MatrixXd shares_;
-  VectorXd friction_force_;  // of those that stick, at the state that is measured
+  VectorXd held_force_;  // of stops and frictions that hold, at the state that is measured
   double step_;
   bool eliminate_linear_;
   VectorXd gradient_, acceleration_, lambda_;
