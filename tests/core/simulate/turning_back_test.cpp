@@ -350,10 +350,11 @@ TEST_CASE("a side that comes onto the axis of its angle ends the run and is name
   const std::string text = R"(
 [structure]
 kind = "custom"
-nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "T", position = [0, 0, 1], fixed = true},
-         {name = "Q", position = [2, 0, 0.5], fixed = true},
-         {name = "N", position = [1, 0, 0.3], mass = 1, velocity = [-1, 0, 0]},
-         {name = "G", position = [1, 1, 0.3], mass = 1}]
+nodes = [{name = "O", position = [0.4, -0.7, 0.2], fixed = true},
+         {name = "T", position = [0.4, -0.7, 1.2], fixed = true},
+         {name = "Q", position = [2.4, -0.7, 0.7], fixed = true},
+         {name = "N", position = [1.4, -0.7, 0.5], mass = 1, velocity = [-1, 0, 0]},
+         {name = "G", position = [1.4, 0.3, 0.5], mass = 1}]
 [solver]
 step = 0.03
 end_time = 2
