@@ -9,6 +9,7 @@
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
+#include "core/simulate/latch.hpp"
 #include "core/study/table.hpp"
 #include "tests/support/models.hpp"
 #include "tests/support/scene_run.hpp"
@@ -405,4 +406,46 @@ end_time = 1
   const Eigen::VectorXd turned = run.trajectory.velocities(i + 1) - run.trajectory.velocities(i);
   CHECK(turned.head(9).norm() < 1e-9);  // the drive holds E
   CHECK(lost(run, "latched") == Approx(0.5 * turned.squaredNorm()).epsilon(1e-9));
+}
+
+TEST_CASE("what remains to a deployed fold angle is the sine of the difference, with offsets") {
+  Deployment d;
+  d.fold_sine = {{0, 2}, {Vec3(0.3, -0.7, 1.1), Vec3(0.9, 0.2, -0.4)}, 0.31};
+  d.fold_cosine = {{1, 2}, {Vec3(-0.6, 0.8, 0.5), Vec3(1.2, -0.1, 0.7)}, -0.47};
+  d.deployed_fold_angle = 0.7;
+  const VectorXd q = VectorXd::LinSpaced(9, -1.3, 2.1).array().sin();
+  CHECK(remaining_form(d)(q) ==
+        Approx(std::cos(0.7) * d.fold_sine(q) - std::sin(0.7) * d.fold_cosine(q)).epsilon(1e-13));
+}
+
+// A point mass on a rod turns evenly, from 0.4 rad at 2 rad/s; latched at 340 degrees.
+TEST_CASE("a sum of angles that latches beyond half a turn counts on") {
+  const Simulation run = run_scene(R"toml(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "R", position = [1, 0, 0], fixed = true},
+         {name = "P", position = ["=1.3*cos(0.4)", "=1.3*sin(0.4)", 0], velocity = ["=-2.6*sin(0.4)", "=2.6*cos(0.4)", 0], mass = 0.7}]
+rods = [{nodes = ["O", "P"], mass = 0}]
+[[constraints]]
+kind = "plane"
+nodes = ["P"]
+normal = [0, 0, 1]
+[deployment]
+measure = ["2 angle R O P about 0 0 1", "-0.5 angle R O P about 0 0 -1"]
+deployed = 850
+[solver]
+stages = 4
+step = 0.02
+at_deployed = "latch"
+end_time = 6
+)toml");
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(run.events.back().kind == "latch");
+  CHECK(run.events.back().t == Approx((340 * radians_per_degree - 0.4) / 2).epsilon(1e-9));
+  CHECK(run.events.back().energy_lost == Approx(0.5 * 0.7 * 2.6 * 2.6).epsilon(1e-8));
+  const double there = 340 * radians_per_degree;
+  CHECK((end_positions(run).tail<3>() - 1.3 * Vec3(std::cos(there), std::sin(there), 0)).norm() <= 1e-9);
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i)
+    CHECK(run.trajectory.state(i).angles.size() == run.trajectory.model(i).system.followed_angles());
+  CHECK(diagnose(run).at("deployed_fraction").values.back() == Approx(1).epsilon(1e-9));
 }
