@@ -114,6 +114,19 @@ TEST_CASE("of several margins the first to cross is found, and all that cross wi
     CHECK(found->which == Which{1, 3});
     CHECK(std::abs(found->probe.at - zero) <= 0.02 / unit);
   }
+  // The first of many is looked for first: no others are closed in on.
+  const auto late = [](double t) { return 0.9 - t * t; };
+  Motion many{std::vector<Margin>(6, Margin{late, nullptr})};
+  many.margins.insert(many.margins.end(), {{[](double t) { return 0.8 - t * t; }, nullptr},
+                                           {[](double t) { return 0.7 - t * t; }, nullptr},
+                                           {[](double t) { return 0.6 - t * t; }, nullptr},
+                                           {[](double t) { return 0.5 - t * t; }, nullptr},
+                                           falling});
+  REQUIRE(many.first());
+  const int of_many = many.solves;
+  Motion alone{{falling}};
+  REQUIRE(alone.first());
+  CHECK(of_many == alone.solves);
   // One that looks later from the ends (a straight line falls to zero at 0.97) and is earlier.
   const Margin sagging{[](double t) { return 0.3 * (0.6 - t) * (1.05 - t); }, nullptr};
   Motion motion{{later, sagging}};
@@ -199,6 +212,15 @@ TEST_CASE("a margin that begins at zero crosses at once if it falls, and later i
   REQUIRE(found);
   CHECK(found->probe.at == 0);
   CHECK(found->which == Which{1});
+  // All that fall at once cross together, and nothing that crosses later.
+  const Margin faster{[](double t) { return -0.7 * t - t * t; }, [](double t) { return -0.7 - 2 * t; }};
+  for (const Margin& other : {faster, without_rate(faster)}) {
+    Motion several{{falling, sinking, thrown, other}};
+    const auto all = several.first();
+    REQUIRE(all);
+    CHECK(all->probe.at == 0);
+    CHECK(all->which == Which{1, 3});
+  }
 }
 
 TEST_CASE("a margin that begins at zero and is back within a part of the step has crossed at once") {
