@@ -74,7 +74,7 @@ VectorXd PushResponses::rates(const VectorXd& w) const {
 }
 
 double PushResponses::at_most(Index i, const VectorXd& w) const {
-  return w.size() > 0 ? rows_[static_cast<std::size_t>(i)].n.lpNorm<1>() * w.lpNorm<Eigen::Infinity>() : 0.0;
+  return rows_[static_cast<std::size_t>(i)].n.lpNorm<1>() * w.lpNorm<Eigen::Infinity>();
 }
 
 double PushResponses::taken(Index i, const VectorXd& w) const {
@@ -126,8 +126,8 @@ PushResponses::Accelerations PushResponses::accelerations(const Structure& struc
   if (!index1.evaluate(state, acceleration, lambda)) return {};
   system_.expand_rate(state.w, v);
   const VectorXd sizes = force_sizes(system_, structure, state, lambda);
-  const double largest = lambda.size() > 0 ? lambda.lpNorm<Eigen::Infinity>() : 0.0;
-  const double fastest = acceleration.size() > 0 ? acceleration.lpNorm<Eigen::Infinity>() : 0.0;
+  const double largest = lambda.lpNorm<Eigen::Infinity>();
+  const double fastest = acceleration.lpNorm<Eigen::Infinity>();
   const double freely =
       sizes.size() > 0 ? sizes.cwiseQuotient(VectorXd(system_.mass().diagonal())).maxCoeff() : 0.0;
   Accelerations out{VectorXd(size()), VectorXd(size()), VectorXd(size()), VectorXd(size()), largest};

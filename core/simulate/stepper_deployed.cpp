@@ -22,7 +22,7 @@ bool Stepper::Loop::arrives(const Probe& to) {
   VectorXd phi(lengths.size());
   system().expand(to.state.z, q_);
   system().at(to.state).constraint(part_end_, q_, phi);
-  const double drift = phi.size() > 0 ? phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>() : 0.0;
+  const double drift = phi.cwiseQuotient(lengths).lpNorm<Eigen::Infinity>();
   return std::abs(fold(to.state)) <= std::max(nothing, rounded_) + 2 * drift &&
          std::abs(remaining_rate(model(), to.state)) * run_.options.step <= at_rest;
 }
