@@ -384,10 +384,11 @@ class Change {
   // Rows that rest without a force are held too, where they are independent of the others; before them
   // friction that bears something, be it at its limit.
   void hold_resting() {
-    for (Index r = 0; r < count(); ++r)
-      if (crossed(r) && at_limit(r)) give_way(r);
     std::vector<Index> order(static_cast<std::size_t>(count()));
     std::iota(order.begin(), order.end(), Index{0});
+    if (std::ranges::any_of(order, [this](Index r) { return crossed(r) && at_limit(r); }))
+      for (const Index r : order)
+        if (at_limit(r)) give_way(r);
     std::stable_partition(order.begin(), order.end(),
                           [&](Index r) { return sides_.is_friction(side(r)) && bears(r); });
     for (const Index r : order) {
@@ -400,19 +401,18 @@ class Change {
     }
   }
 
-  // Friction that bears all that it can leaves its place to a stop that is in its way.
+  // Friction that bears all that it can leaves its place to a stop in its way, where none has to pull then.
   void give_way(Index r) {
-    std::vector<bool> held = solution_.held;
-    held[static_cast<std::size_t>(r)] = false;
-    const VectorXd pushed = D_ * past_held(D_, held, r) * solution_.x[r];
-    for (Index i = 0; i < count(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const double zero = zero_acceleration(i);
-      if (!sides_.is_stop(side(i)) || !rests_[k] || held[k] || solution_.w[i] > zero || !(pushed[i] > zero) ||
-          !independent(D_, held, i))
-        continue;
-      held[k] = true;
-      return std::swap(solution_.held, held);
+    const auto stop = [&](Index k) { return sides_.is_stop(side(k)) && rests_[static_cast<std::size_t>(k)]; };
+    for (Index k = 0; k < count(); ++k) {
+      std::vector<bool> held = solution_.held;
+      held[static_cast<std::size_t>(r)] = false;
+      if (!stop(k) || !independent(D_, held, k) || solution_.w[k] > zero_acceleration(k)) continue;
+      held[static_cast<std::size_t>(k)] = true;
+      const VectorXd x = solution_.x - solution_.x[r] * past_held(D_, held, r);
+      bool push = x[k] - solution_.x[k] > rounding * std::abs(solution_.x[r]);
+      for (Index i = 0; i < count(); ++i) push = push && (!stop(i) || x[i] >= 0);
+      if (push) return solution_.x = x, void(solution_.held = held);
     }
   }
 
