@@ -95,8 +95,8 @@ Best tighten(const Ladder& ladder, double goal) {
     Solution next = ladder.solve(level);
     if (last && next) {
       const double apart = difference(*last, *next, ladder.in_space);
-      worse = apart < best.uncertainty ? 0 : worse + 1;
-      if (apart < best.uncertainty) best = {next, apart, level};
+      ++worse;
+      if (apart < best.uncertainty) best = {next, apart, level}, worse = 0;
       if (apart <= goal) break;
     }
     last = std::move(next);
@@ -184,12 +184,14 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
   const double goal = std::max(enough, 64 * std::numeric_limits<double>::epsilon()) * size;
   Best best = tighten(steps, goal);
   double apart = std::numeric_limits<double>::infinity();
+  const auto least = [&](const Best& b) { return 1e-6 * std::max(size, farthest(*b.solution, in_space)); };
+  const auto agrees = [&](const Best& b) { return b.solution && b.uncertainty <= least(b); };  // with itself
   Reference out;
   out.how = "Bulirsch-Stoer extrapolation of order 16 on the index-1 equations with " +
             std::to_string(intervals << best.level) + " basic steps";
   if (!(best.uncertainty <= std::max(goal, 1e-9 * size))) {
     Best other = tighten(variational(*model, end, intervals, hooks), goal);
-    if (best.solution && other.solution) apart = difference(*best.solution, *other.solution, in_space);
+    if (agrees(best) && agrees(other)) apart = difference(*best.solution, *other.solution, in_space);
     if (other.uncertainty < best.uncertainty) {
       best = std::move(other);
       out.how = "dvm with " + std::string(best.level % 2 ? "7" : "8") + " nodes and " +
@@ -200,19 +202,17 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
     apart = distance_of_other(variational(*model, end, intervals, hooks), *best.solution,
                               std::max(goal, best.uncertainty));
   }
-  const double way = best.solution ? farthest(*best.solution, in_space) : 0.0,
-               least = 1e-6 * std::max(size, way);
-  if (!(best.uncertainty <= least))
+  if (!agrees(best))
     throw ReferenceError(
         "the reference does not converge: " +
         (best.solution ? "its best two solutions differ by " + short_number(best.uncertainty) + " m"
                        : std::string("no two solutions run through")) +
         "; give the motion an earlier solver.end_time, before it becomes chaotic or singular");
-  if (apart > least && !std::isinf(apart))
+  if (apart > least(best) && !std::isinf(apart))
     throw ReferenceError("there is no reference: two methods, each of which agrees with itself to " +
                          short_number(best.uncertainty) + " m, differ by " + short_number(apart) + " m");
   out.confirmed = !std::isinf(apart);
-  out.size = size > 0 ? size : way;
+  out.size = size > 0 ? size : farthest(*best.solution, in_space);
   for (int i = 0; i <= intervals; ++i) out.t.push_back(end * i / intervals);
   out.q = std::move(*best.solution);
   out.uncertainty = out.confirmed ? std::max(best.uncertainty, apart) : best.uncertainty;

@@ -2,10 +2,16 @@
 // Which of its solutions a reference is, and what it says of itself.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdio>
 
+#include "core/integrators/dvm.hpp"
+#include "core/integrators/integrator.hpp"
+#include "core/scene/build.hpp"
+#include "core/scene/reader.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/study/extrapolation.hpp"
 #include "core/study/reference.hpp"
+#include "core/study/table.hpp"
 #include "tests/support/models.hpp"
 
 using namespace unfurl;
@@ -70,6 +76,68 @@ TEST_CASE("a reference is the first of its solutions that agrees with the one be
     }
   }
   CHECK(found >= 3);
+}
+
+// P goes round O on a stretched spring, m v^2 / r = k (r - l): an angle of v t / r. The spring's own swings
+// are too quick for the steps of the extrapolation, which blows up; dvm has none of them.
+TEST_CASE("where the extrapolation blows up dvm is the reference, and what it says of itself is true") {
+  const double mass = 1.7, radius = 1.25, speed = 2.3, end = 0.9, stiffness = 1e5;
+  const Vec3 out(0.6, 0, 0.8), along(0.48, 0.8, -0.36);  // unit vectors, at right angles
+  const auto triple = [](const Vec3& v) {
+    return "[" + exact_number(v.x()) + ", " + exact_number(v.y()) + ", " + exact_number(v.z()) + "]";
+  };
+  const auto model = build_model(read_scene_text(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'O', position = [0, 0, 0], fixed = true}, {name = 'P', "
+      "position = " +
+          triple(radius * out) + ", velocity = " + triple(speed * along) + ", mass = " + exact_number(mass) +
+          "}]\n[[forces]]\nkind = 'spring'\nnodes = ['O', 'P']\nstiffness = " + exact_number(stiffness) +
+          "\nfree_length = " + exact_number(radius - mass * speed * speed / (radius * stiffness)) + "\n",
+      "round.toml", {}));
+  for (const int intervals : {2, 3}) {
+    const Reference r = solve_reference(model, end, intervals, {});
+    INFO(r.how << ", " << r.uncertainty << " m");
+    CHECK_FALSE(r.confirmed);
+    int nodes = 0, steps = 0;
+    REQUIRE(std::sscanf(r.how.c_str(), "dvm with %d nodes and %d steps", &nodes, &steps) == 2);
+    CHECK(r.how.ends_with(" steps, because the index-1 equations do not pass this motion"));
+    SolverOptions options;
+    options.stages = nodes;
+    const auto method = careful_dvm().make(model->system, options);
+    State state = initial_state(model->structure, model->system).state;
+    for (int i = 0; i < steps; ++i) REQUIRE(method->step(state, end / steps).ok());
+    VectorXd q(model->system.coordinates());
+    model->system.expand(state.z, q);
+    // The spring multiplies what rounding leaves of a step by k h^2 / m, some 100 at most.
+    CHECK(node_distance(q, r.q.back()) < 1e-12);
+    REQUIRE(r.q.size() == static_cast<std::size_t>(intervals) + 1);
+    for (std::size_t i = 0; i < r.q.size(); ++i) {
+      const double angle = speed * r.t[i] / radius;
+      const Vec3 exact = radius * (std::cos(angle) * out + std::sin(angle) * along);
+      CHECK((r.q[i].tail<3>() - exact).norm() < 1e-6 * radius);
+      CHECK((r.q[i].tail<3>() - exact).norm() < 1e-11 + 10 * r.uncertainty);
+    }
+  }
+}
+
+// A slide that a drive takes along from some time on, at once.
+TEST_CASE("a drive may jump at the ends of a reference and not between them") {
+  const auto reference = [](double start) {
+    return solve_reference(build_model(read_scene_text(
+                               "[structure]\nkind = 'custom'\nnodes = [{name = 'P', position = [0.3, 0.2, "
+                               "0.1], mass = 1.5}]\n[[constraints]]\nkind = 'coordinate'\nnodes = "
+                               "['P']\ndirection = [1, 0, 0]\nmotion = 'rate'\nrate = 0.7\nstart = " +
+                                   exact_number(start) + "\n",
+                               "slide.toml", {})),
+                           0.9, 3, {});
+  };
+  for (const double start : {0.0, 0.9, 1.4}) {
+    const Reference r = reference(start);
+    for (std::size_t i = 0; i < r.q.size(); ++i)
+      CHECK(r.q[i].x() == Approx(0.3 + 0.7 * std::max(0.0, r.t[i] - start)).epsilon(1e-13));
+  }
+  for (const double start : {0.3, 0.41, 0.75})
+    CHECK_THROWS_WITH(reference(start), Catch::StartsWith("there is no reference across the time of " +
+                                                          short_number(start, 6) + " s"));
 }
 
 }  // namespace reference_levels_test

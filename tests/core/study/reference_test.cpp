@@ -49,6 +49,14 @@ TEST_CASE("one node alone has a reference, moving or at rest") {
       0.1, 4, {});
   CHECK(thrown.size == Approx(0.4905 * 0.4905 / (2 * 9.81)).epsilon(1e-12));
   CHECK(thrown.how.starts_with("Bulirsch"));
+  // Thrown slower it ends farther below its start than it rose.
+  const Reference fallen = solve_reference(
+      build_model(read_scene_text("[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], "
+                                  "velocity = [0, 0, 0.3], mass = 2}]\n"
+                                  "[gravity]\nacceleration = [0, 0, -9.81]\n",
+                                  "fallen.toml")),
+      0.1, 4, {});
+  CHECK(fallen.size == Approx(0.5 * 9.81 * 0.01 - 0.3 * 0.1).epsilon(1e-12));
 }
 
 TEST_CASE("references of a whole ring, in which errors grow, are certain to round-off at every step") {
