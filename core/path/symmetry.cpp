@@ -190,7 +190,7 @@ class Trial {
           std::find_if(there.begin(), there.end(), [&](int j) { return same(image, all[slot(j)], size_); });
       if (equal == there.end()) continue;
       to[i] = *equal;
-      is_image[slot(*equal)] = 1;
+      is_image[slot(*equal)] = true;
       there.erase(equal);
     }
     const auto none = std::find(to.begin(), to.end(), -1);
@@ -342,8 +342,11 @@ std::vector<int> orders_of(const Structure& structure, const Vec3& axis, const V
     const Vec3 r = node.position - centre;
     return r - r.dot(axis) * axis;
   };
+  double longest = 0;
+  for (const Node& node : structure.nodes) longest = std::max(longest, arm(node).norm());
+  const double off_axis = std::min(1e3 * tolerance, 0.5 * longest);
   const auto first = std::find_if(structure.nodes.begin(), structure.nodes.end(), [&](const Node& node) {
-    return !node.ghost && arm(node).norm() > 1e3 * tolerance;
+    return !node.ghost && arm(node).norm() > off_axis;
   });
   if (first == structure.nodes.end()) return {};
   const Vec3 from = arm(*first);
@@ -354,7 +357,7 @@ std::vector<int> orders_of(const Structure& structure, const Vec3& axis, const V
         std::abs((node.position - first->position).dot(axis)) > 8 * tolerance)
       continue;
     const double angle = std::atan2(axis.dot(from.cross(to)), from.dot(to));
-    if (angle < 1e-6) continue;
+    if (angle < 1e-6 || angle * from.norm() <= 8 * tolerance) continue;
     const double n = 2 * pi / angle, off = std::abs(2 * pi / std::round(n) - angle) * from.norm();
     if (off <= 8 * tolerance && n > fewest_sectors - 0.5) orders.push_back(static_cast<int>(std::lround(n)));
   }
