@@ -147,8 +147,8 @@ bool same_entry(const Rod& x, const Rod& y) {
   return std::minmax(a, b) == std::minmax(y.a, y.b) && close_to(mass, y.mass) && close_to(length, y.length) &&
          multiplicity == y.multiplicity && area == y.area && youngs_modulus == y.youngs_modulus &&
          second_moment == y.second_moment && strength == y.strength && gives == y.gives &&
-         damping_time == y.damping_time && close_to(free_length, y.free_length) && expansion == y.expansion &&
-         alike(warming, y.warming) && parts == y.parts;
+         close_to(damping_time, y.damping_time) && close_to(free_length, y.free_length) &&
+         expansion == y.expansion && alike(warming, y.warming) && parts == y.parts;
 }
 
 bool same_form(const LinearForm& a, const LinearForm& b) {

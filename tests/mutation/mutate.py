@@ -37,7 +37,7 @@ ONLY = []  # folders of core; none: all
 # (kind, changed line, why): errors that no test can see, because nothing that is computed depends on them.
 EQUIVALENT = [
     ("dropped statement", r"\.(reserve|shrink_to_fit)\(", "only where memory comes from"),
-    ("swap", r"(min|max|hypot|larger|dot)(<[\w:]+>)?\(unfurl_mutation::on\(@\) \?", "the order says nothing"),
+    ("swap", r"(min|max|hypot|larger|dot|opposite|node_distance|alike|close_to|same_entry)(<[\w:]+>)?\(unfurl_mutation::on\(@\) \?", "the order says nothing"),
     ("factor 2", r"= std::numeric_limits<double>::infinity\(\), .*twice\(@\) \* -?\w+[,;]", "twice infinity"),
     ("factor 2", r"twice\(@\) \* \w+::Zero\(", "twice nothing"),
     ("sign", r"sign\(@\) \* \w+::Zero\(", "nothing, the other way round"),

@@ -195,7 +195,7 @@ TEST_CASE("rounding makes no entries unlike, and what has no direction may be tu
   c.value *= ulps, c.vectors[1] *= ulps, c.target.offset += 1e-14, c.target.rise -= 1e-14;
   CHECK(same(held(), c));
   Rod r = rod();
-  r.mass *= ulps, r.length *= ulps, r.free_length *= ulps;
+  r.mass *= ulps, r.length *= ulps, r.free_length *= ulps, r.damping_time *= ulps;
   std::swap(r.a, r.b);
   CHECK(same(rod(), r));
   Force nowhere = force();
