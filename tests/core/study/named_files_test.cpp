@@ -84,6 +84,18 @@ TEST_CASE("files of a sweep over variables are those of all values, and the scen
   CHECK(both.find("n_2.csv") != std::string::npos);
   CHECK(both.find("n_1.csv") == std::string::npos);  // of the scene as it stands
   CHECK(files_of_points(plan("variables.k=1,2,3")).find("\"n_3.csv\": not there") != std::string::npos);
+  // Another text of one of them is another sweep, and the first one's again the first.
+  const auto second = [&](const char* more) {
+    std::ofstream(folder.path / "n_2.csv") << "name,x_m,y_m,z_m,fixed,mass_kg\nN0,0,0,2,1,1\nN1,1,0,2,0,1\n"
+                                           << more;
+    return files_of_points(plan("variables.k=1,2"));
+  };
+  const std::string few = second(""), more = second("N2,2,0,2,0,1\n");
+  CHECK(few != both);
+  CHECK(few != more);
+  CHECK(second("") == few);
+  CHECK_FALSE(identity_of_both(few, more, true));
+  CHECK(identity_of_both(few, few, false) == few);
   const SweepPlan other = plan("variables.g=1:10:1000");
   other.source.read();
   const double begin = cpu_seconds();

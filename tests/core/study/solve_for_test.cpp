@@ -346,4 +346,29 @@ TEST_CASE("walls on both sides are told, and a measure that ends between the end
                         "2.5 to 2.5 the measure runs from 7.5 to 7.5"));
 }
 
+// A straight line is met by regula falsi at once; of these numbers all are known to the last bit.
+TEST_CASE("a straight line takes three runs wherever its root lies") {
+  for (const double shift : {0.0, -1.5, 3.25, -64.0, 64.0})
+    for (const double slope : {4.0, -0.5}) {
+      CAPTURE(shift, slope);
+      const auto line = [&](double x) { return slope * (x - shift + 1.5); };
+      const Solved s = solve_for(line, 0, {.low = shift - 4, .high = shift - 1.125}, {});
+      CHECK(s.x == shift - 1.5);
+      CHECK(s.evaluations.size() <= (shift == 0.0 || shift == 3.25 ? 4 : 3));
+    }
+}
+
+// Nothing is there beyond where the scene stands: each stride there is halved, 30 times to 1e-9.
+TEST_CASE("a search that begins at a wall gives up that side alone") {
+  for (const double sign : {1.0, -1.0}) {
+    const auto f = [&](double x) {
+      return sign * x > sign * 2.3 ? none : 8 - 1 / (1 + (x - 2.3) * (x - 2.3));
+    };
+    CHECK_THROWS_WITH(solve_for(f, 9, {.start = 2.3}, {}),
+                      Catch::StartsWith("the target is not reached on either side of 2.3"));
+    const auto line = [&](double x) { return sign * x > sign * 2.3 ? none : sign * x; };
+    CHECK(solve_for(line, -400, {.start = 2.3}, {}).x == Approx(-400 * sign).epsilon(1e-11));
+  }
+}
+
 }  // namespace solve_for_test

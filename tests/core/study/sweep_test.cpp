@@ -163,6 +163,17 @@ TEST_CASE("values that differ in late digits only have names that differ") {
   const SweepAxis axis = parse_axis("structure.length=1.0000001,1.0000002,3");
   CHECK(axis.title(0) == "length = 1.0000001");
   CHECK(axis.title(1) == "length = 1.0000002");
+  // Of many, those around them tell them apart: twenty to each side.
+  std::string many = "structure.length=3";
+  for (int i = 1; i < 60; ++i)
+    many += "," + std::string(i == 15 || i == 35 ? "0.12345670" : "0.5432100") + std::to_string(100 + i);
+  const SweepAxis list = parse_axis(many);
+  CHECK(list.title(15) == "length = 0.1234567012");  // ...0115 and ...0135: ten digits
+  CHECK(list.title(35) == "length = 0.1234567014");
+  std::string far = "structure.length=0.123456701";
+  for (int i = 1; i < 65; ++i)
+    far += "," + (i == 32 ? "0.123456702" : i == 64 ? "0.123456703" : std::to_string(i) + ".5");
+  CHECK(parse_axis(far).title(32) == "length = 0.123457");
   const SweepAxis thirds = parse_axis("structure.length=0:1:4");
   CHECK(thirds.title(1) == "length = 0.333333");
 }
@@ -240,6 +251,8 @@ TEST_CASE("a plan is refused with its reason, and says which forces are unique")
   CHECK(refusal({"structure.units=4:9:3"}, {"deploy_time"}) ==
         "'structure.units' takes whole numbers; 6.5 is none: give a COUNT that leads to some, or list them "
         "(structure.units=4,6,12)");
+  CHECK(refusal({"structure.fold_angle=40:80:4000", "solver.step=0.01:0.02:2500"}, {"deploy_time"}) ==
+        "deploy_time ");
   CHECK(refusal({"structure.fold_angle=40:80:4000", "solver.step=0.01:0.02:2501"}, {"deploy_time"}) ==
         "the grid has more than 1e7 points, 1e7: structure.fold_angle (4000) x solver.step (2501)");
   CHECK(refusal(angle, {"peak_tension", "deploy_time"}) == "peak_tension deploy_time peak_tension_unique ");

@@ -48,6 +48,31 @@ TEST_CASE("what was solved along its path says its error where a tolerance was a
   CHECK(run.solved_as.name == "path");
   CHECK(run.position_estimate > 0);
   CHECK(run.position_estimate <= 1e-10);
+  options.tolerance = 1e-15;
+  const Simulation tight = simulate_as_asked(ring, options);
+  REQUIRE_FALSE(tight.warnings.empty());
+  CHECK(tight.warnings.back() == "the tolerance of 1e-15 m is out of reach; the estimated error is " +
+                                     short_number(tight.position_estimate) + " m");
+}
+
+// Of a sector it is no reason that it has none.
+TEST_CASE("why it is the full model that was solved is told of each of the others that it could have been") {
+  SolverOptions options = dvm_options(3, 0.02, 0.05);
+  options.model = "auto";
+  const auto why = [&](const Structure& structure) {
+    const Simulation run = simulate_as_asked(make_model(structure), options);
+    CHECK(run.solved_as.name != "path");
+    return run.solved_as.why;
+  };
+  const std::string pendulum = why(double_pendulum());
+  CHECK(pendulum.starts_with("no path: "));
+  CHECK(pendulum.find("; no sector: no turn by a third") != std::string::npos);
+  Structure sector = hoop_structure({{"model", std::string("sector")}, {"fold_angle", 63.0}});
+  Force spin;  // which the path does not know
+  spin.kind = "motor", spin.name = "crank", spin.measure.kind = MeasureKind::fold;
+  spin.motor.stall = 3, spin.motor.no_load_speed = 7, spin.motor.limit = 2;
+  sector.forces.push_back(spin);
+  CHECK(why(sector) == "no path: the current of a motor is limited");
 }
 
 TEST_CASE("a tolerance below round-off is said to be out of reach") {
