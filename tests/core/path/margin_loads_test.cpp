@@ -199,6 +199,31 @@ TEST_CASE("latches bear what drives the deployed pose on, and take the energy th
   CHECK(margin_in(ring({})).loads.empty());
 }
 
+// Each holds its hinge by a length w: at rates of w r they bear w of each other's loads, and of the work that
+// these do together, 12 hinge r, all do their part.
+TEST_CASE("of latches that go at unlike rates the most loaded is told") {
+  const Scene scene = ring({"solver.at_deployed=latch"});
+  Structure structure = build_model(scene)->structure;
+  double most = 0, squares = 0;
+  for (std::size_t k = 0; k < structure.deployment.latches.size(); ++k) {
+    const double w = (k % 2 ? -1 : 1) * (0.6 + 0.13 * static_cast<double>((5 * k) % 12));
+    for (Vec3& c : structure.deployment.latches[k].coefficients) c *= w;
+    most = std::max(most, std::abs(w));
+    squares += w * w;
+  }
+  System system(structure, true);
+  const Margin margin =
+      margin_of(std::make_shared<const Model>(Model{structure, std::move(system)}), scene.solver, {});
+  const double total = 12 * hinge * chord, work = total * std::sin(start);
+  REQUIRE(margin.loads.size() == 2);
+  CHECK(margin.loads[0].load == Approx(total).epsilon(1e-8));
+  const MarginLoad& one = margin.loads[1];
+  CHECK(one.name == "most loaded of 12 latches");
+  CHECK(one.load == Approx(12 * hinge * most / squares).epsilon(1e-8));
+  CHECK(one.speed == Approx(margin.loads[0].speed * chord * most).epsilon(1e-8));
+  CHECK(one.energy == Approx(work * most * most / squares).epsilon(1e-8));
+}
+
 TEST_CASE("a latch that springs pull back holds them, and one that is not reached is met by nothing") {
   const double total = 12 * hinge * chord, work = total * std::sin(start);
   const auto spring = [](double k) {
