@@ -144,6 +144,47 @@ TEST_CASE("tighter tolerances cost more work, by stages or steps") {
   CHECK(tight.position_estimate < loose.position_estimate);
 }
 
+// The solves of a run, a factorisation as much as eight: what it costs. Of runs with steps of its own grids,
+// of any stages, whose true error is below the tenth of what is let pass, none is much cheaper.
+TEST_CASE("a pick for a tolerance costs little more than the cheapest run that meets it well") {
+  const auto cost = [](const Simulation& run) {
+    double solves = 8.0 * static_cast<double>(run.factorisations);
+    for (std::size_t i = 0; i < run.trajectory.size(); ++i)
+      solves += run.trajectory.report(i).right_hand_sides;
+    return solves;
+  };
+  const auto model = make_model(double_pendulum());
+  constexpr int parts = 35;
+  const Reference truth = solve_reference(model, 2.0, parts, {});
+  const auto error = [&](const Simulation& run) {
+    double most = 0;
+    for (std::size_t i = 0; i < truth.t.size(); ++i) {
+      VectorXd q(model->system.coordinates());
+      model->system.expand(run.trajectory.state_at(truth.t[i]).z, q);
+      most = std::max(most, node_distance(q, truth.q[i]));
+    }
+    return most;
+  };
+  std::vector<std::pair<double, double>> all;  // error, cost
+  for (int stages = 2; stages <= 7; ++stages)
+    for (const int more : {1, 2, 4, 8, 16}) {
+      const Simulation run = simulate(model, dvm_options(stages, 2.0 / (parts * more), 2.0));
+      all.emplace_back(error(run), cost(run));
+    }
+  for (const double tolerance : {3e-2, 1e-4, 1e-8, 1e-11}) {
+    SolverOptions options = dvm_options(3, 0.01, 2.0);
+    options.tolerance = tolerance;
+    const Simulation run = simulate_as_asked(model, options);
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [off, solves] : all)
+      if (off <= 0.1 * tolerance) least = std::min(least, solves);
+    INFO(tolerance << ": " << run.options.stages << " stages, " << run.steps << " steps, " << cost(run)
+                   << " of " << least);
+    CHECK(error(run) <= tolerance);
+    CHECK(cost(run) <= 1.25 * least);
+  }
+}
+
 namespace tolerance_test {
 
 namespace {
