@@ -208,6 +208,31 @@ TEST_CASE("a ring is followed as a sector to its deployed pose, and has its forc
   CHECK(std::abs(a - b) <= 1e-4 * std::abs(b));
 }
 
+// Where the pose is singular the sector's multipliers are lifted: each constraint's own, that of a drive of
+// the whole ring n times the sector's. Extrapolated there from states next to it in both
+// (deployed_event.hpp).
+TEST_CASE("in a singular deployed pose a ring has the forces of its sector, and a drive's for all of them") {
+  const std::vector<std::string> small{"structure.units=4", "structure.fold_angle=20", "solver.step=0.02",
+                                       "structure.model=joints"};
+  const std::vector<Ring> rings{
+      {"hoop6", joined(small, {"structure.model=full"})},
+      {"hoop6", small},
+      {"hoop6", joined(small, {"structure.hinge_force=0",
+                               "constraints[0]={kind=\"angle\",fold_angle=true,motion=\"rate\",rate=-50}"})}};
+  for (const Ring& ring : rings) {
+    INFO(ring.scene << " " << ring.changes.back());
+    const Simulation full = solved(ring, "full", 9), one = solved(ring, "sector", 9);
+    REQUIRE(full.status == RunStatus::deployed);
+    REQUIRE(one.solved_as.name == "sector");
+    REQUIRE(one.trajectory.size() == full.trajectory.size());
+    const std::size_t last = full.trajectory.size() - 1;
+    const VectorXd a = one.trajectory.state(last).lambda, b = full.trajectory.state(last).lambda;
+    REQUIRE((full.trajectory.report(last).singular_event && one.trajectory.report(last).singular_event));
+    REQUIRE(a.size() == b.size());
+    CHECK((a - b).norm() <= 1e-6 * b.norm());
+  }
+}
+
 TEST_CASE("what is unlike in a ring keeps the full model, and is named") {
   const std::string base_spring =
       R"(forces[3]={name="hinge 3",kind="torsion_spring",nodes=["B3","Mb3","B4"],stiffness=37,damping=)";
