@@ -160,7 +160,7 @@ double time_from_rest(const Path& path, const VectorXd& force, double from, doub
   const auto first = path.piece_of(from), last = path.piece_of(to);
   if (!first || !last) return nan;
   double sum = 0, entry = from, before = 0;
-  for (long k = *first;; k += sense > 0 ? 1 : -1) {
+  for (long k = *first;; k += (sense > 0 ? 1 : -1)) {
     const PathPiece& piece = *path.piece(k);
     const double end = sense > 0 ? std::min(piece.b, to) : std::max(piece.a, to);
     if (end != entry) {
