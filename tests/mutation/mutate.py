@@ -90,7 +90,7 @@ def begin_of_operand(code, at, stops):
     return None
 
 
-LOW = (" && ", " || ", " ? ", " : ", ";", ", ", " = ", "return ")
+LOW = (" && ", " || ", " ? ", " : ", ";", ", ", " = ", " += ", " -= ", "return ")
 
 
 def sites(line):
