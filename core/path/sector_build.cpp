@@ -200,7 +200,7 @@ class SectorBuilder {
     if (!rows.inconsistent.empty())
       throw SectorRefused(found[place(rows.inconsistent.front())].name + " contradicts the symmetry");
     std::vector<char> follows(found.size(), 0);
-    for (const int r : rows.redundant) follows[place(r)] = 1;
+    for (const int r : rows.redundant) follows[place(r)] = true;
     for (std::size_t r = 0; r < found.size(); ++r)
       if (!follows[r]) s().constraints.push_back(std::move(found[r]));
   }

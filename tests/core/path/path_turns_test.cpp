@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "core/path/path_run.hpp"
+#include "core/path/path_time.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
+#include "core/structure/node_positions.hpp"
 #include "core/study/table.hpp"
 #include "core/study/tolerance.hpp"
 #include "tests/support/runs_apart.hpp"
@@ -97,6 +99,26 @@ TEST_CASE("a drive takes a rod through turns to where it says") {
       CHECK(off_turns(angle_at(run, t) - (40 + rate * (t - 0.2)) * degrees) < 1e-10);
     const VectorXd v = run.trajectory.node_velocities(run.trajectory.size() - 1);
     CHECK(v.tail<3>().norm() == Approx(std::abs(rate) * degrees * length).epsilon(1e-11));
+  }
+}
+
+// What is deployed by an angle is so when it has turned that far, not a turn before.
+TEST_CASE("a deployed pose turns away is that of the angle as it is counted on") {
+  const auto model = build_model(rod("", 0, 1));
+  const Path path(std::shared_ptr<const System>(model, &model->system),
+                  model->system.reduce(node_positions(model->structure)));
+  Deployment d;
+  d.measured = true;
+  d.measure = {MeasureKind::angle, {1, 0, 1, 2}, Vec3::UnitY(), 40 * degrees, {}};
+  d.stowed = 40 * degrees;
+  const double per_angle = std::sqrt(1.7 * length * length / 3);
+  for (const double deployed : {75.0, 390.0, 500.0, 955.0, -310.0, -700.0, -25.0}) {
+    CAPTURE(deployed);
+    d.deployed = deployed * degrees;
+    const auto ahead = deployed_pose(path, d, true, 200), behind = deployed_pose(path, d, false, 200);
+    REQUIRE(ahead.has_value() != behind.has_value());
+    CHECK(std::abs(ahead ? *ahead : *behind) ==
+          Approx(per_angle * std::abs(deployed - 40) * degrees).epsilon(1e-11));
   }
 }
 

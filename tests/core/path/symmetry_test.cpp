@@ -2,6 +2,7 @@
 // Rings of general entries about any axis: the turns that take them onto each other, and what is odd by name.
 #include "core/path/symmetry.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -348,6 +349,13 @@ TEST_CASE("a ring of general entries moves as one of its sectors does") {
       }
     if (!elastic) s.constraints.insert(s.constraints.begin(), mean);
     const auto model = testing::make_model(s);
+    // Of a unit, and the next one's Q and P, which its cord and its strut end at.
+    const Sector sector(model);
+    const Structure& of_unit = sector.model()->structure;
+    CHECK(of_unit.nodes.size() == 4 + 2);
+    CHECK(of_unit.rods.size() == 3);
+    CHECK(of_unit.forces.size() == 2);
+    CHECK(std::ranges::count(of_unit.constraints, "measure", &Constraint::kind) == 1);
     SolverOptions options = testing::dvm_options(4, elastic ? 0.005 : 0.02, elastic ? 0.06 : 0.3);
     options.model = "sector";
     const Simulation one = simulate_as_asked(model, options);
