@@ -161,6 +161,35 @@ end_time = 60
   CHECK(hinges[0].static_torque == Approx(2 * 0.1 * radians_per_degree).epsilon(1e-9));
 }
 
+// A spring k from O to B that is free at 0.1 m turns the hinge A by k (1 - 0.1 / r) sqrt(5) sin(angle), r =
+// OB, which grows from 117 to 95 degrees. Two hinges turn: of two there is one pair, where two may be paired.
+TEST_CASE("a hinge is held most easily at the start where what drives it grows and pairs are of few") {
+  const Scene scene = read_scene_text(four_bar(node_a, node_b, R"([[forces]]
+kind = "spring"
+nodes = ["O", "B"]
+stiffness = 7
+free_length = 0.1
+[deployment]
+measure = "angle O A B"
+deployed = 95
+[solver]
+end_time = 60
+)"),
+                                      "drawn.toml");
+  const auto model = build_model(scene);
+  const Margin margin = margin_of(model, scene.solver);
+  for (const std::size_t most : {0U, 1U, 2U, 3U}) {
+    const auto hinges = stuck_hinges(model, scene.solver, margin, most);
+    REQUIRE(hinges.size() == (most < 2 ? 2U : 3U));
+    const auto own = std::ranges::find_if(hinges, [](const StuckHinge& h) {
+      return h.name.find(" and ") == std::string::npos && h.name.find("O-A") != std::string::npos;
+    });
+    REQUIRE(own != hinges.end());
+    // There r = sqrt(8), and the sine 2 / sqrt(5).
+    CHECK(own->static_torque == Approx(7 * (1 - 0.1 / std::sqrt(8.0)) * 2).epsilon(1e-9));
+  }
+}
+
 // Whichever way it goes, and where it turns back or passes in line: as in a run, whose sum over states is
 // short where the hinge passes in line between two of them, by less than its turn in a step: twice, 0.002
 // rad.

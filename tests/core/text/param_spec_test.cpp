@@ -106,6 +106,23 @@ TEST_CASE("every kind of parameter takes values of its own kind only") {
     }
 }
 
+TEST_CASE("a parameter keeps its name, its unit and what it is for") {
+  const ParamSpec specs[] = {
+      real_param("p", "m", 3, 2, 8, "how far"), positive_param("p", "m", 3, "how far"),
+      integer_param("p", 3, 2, 8, "how far"),   choice_param("p", "b", {"b"}, "how far"),
+      boolean_param("p", true, "how far"),      vector_param("p", "m", {1, 1}, "how far"),
+      text_param("p", "there", "how far"),      names_param("p", "how far")};
+  for (const ParamSpec& spec : specs) {
+    CHECK(spec.name == "p");
+    CHECK(spec.help == "how far");
+    const bool has_unit = spec.kind == ParamKind::real || spec.kind == ParamKind::vector;
+    CHECK(spec.unit == (has_unit ? "m" : ""));
+    CHECK_FALSE(spec.min_open == (&spec != specs + 1));
+  }
+  CHECK(std::get<std::string>(specs[6].fallback) == "there");
+  CHECK(std::get<std::string>(specs[3].fallback) == "b");
+}
+
 TEST_CASE("lists have the length that is asked for, and some names") {
   ParamSpec pair = names_param("p", "");
   CHECK_FALSE(range_error(pair, std::vector<std::string>{}).empty());
