@@ -137,4 +137,21 @@ TEST_CASE("a long name is cut between two characters") {
   CHECK(in_quotes(std::string(59, 'a') + "\xC3z") == "'" + std::string(59, 'a') + "\xC3...'");
 }
 
+TEST_CASE("a known name with a unit behind it is told from other names") {
+  const std::vector<std::string_view> known = {"mass", "mass_per_length", "step", "a", "area"};
+  const auto before = [&](std::string_view given) { return std::string(name_before_unit(given, known)); };
+  for (const char* given : {"mass_kg", "mass kg", "mass_KG", "mass(kg)", "mass (kg)", "mass[kg]", "mass_[kg]",
+                            "mass kg/m", "mass_kg_m2", "mass_g", "mass_t", "mass \u00B5m"})
+    CHECK(before(given) == "mass");
+  CHECK(before("mass_per_length_kg_per_m") == "mass_per_length");
+  CHECK(before("step_ms") == "step");
+  CHECK(before("area_mm^2") == "area");
+  CHECK(before("area_V") == "area");
+  CHECK(before("area_A") == "area");
+  for (const char* given : {"masskg", "mass_rate", "mass_", "mass ", "mass", "area_a", "area_v", "mass-kg",
+                            "length_mm", "mass_kgs", "mass_mk", "kg"})
+    CHECK(before(given).empty());
+  CHECK(name_before_unit("mass_g", {"mass", "mass_m"}).empty());  // nearer to another name
+}
+
 }  // namespace nearest_name_test

@@ -15,8 +15,10 @@ TEST_CASE("texts for a terminal keep letters, lines and tabs, and show what woul
   CHECK(printable_text("\u00E9 \u4E16 \U0001F6F0") == "\u00E9 \u4E16 \U0001F6F0");
   CHECK(printable_text(std::string("a\0b", 3)) == "a\\x00b");
   CHECK(printable_text("\x1B[2J\r\x7F") == "\\x1b[2J\\x0d\\u007f");
-  CHECK(printable_text("\u0085") == "\\u0085");                 // C1: next line, as JSON and TOML have it
-  CHECK(printable_text("\u00A0") == "\u00A0");                  // the first that is none
+  CHECK(printable_text("a\r\nb\r") ==
+        "a\r\nb\\x0d");                          // the end of a line, and one that goes back to its begin
+  CHECK(printable_text("\u0085") == "\\u0085");  // C1: next line, as JSON and TOML have it
+  CHECK(printable_text("\u00A0") == "\u00A0");   // the first that is none
   CHECK(printable_text("\u202Ex\u2069") == "\\u202ex\\u2069");  // turns the direction of what follows
   CHECK(printable_text("\u2029\u202F") == "\u2029\u202F");      // neighbours of those
   CHECK(printable_text("\xFF\xC3(") == "\\xff\\xc3(");          // no UTF-8
