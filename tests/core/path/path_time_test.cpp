@@ -55,7 +55,7 @@ VectorXd force(double weight) {
 
 }  // namespace
 
-TEST_CASE("the time from rest is the quadrature of the energy, over however many pieces of the path") {
+TEST_CASE("the time from rest is the quadrature of the energy over however many pieces of the path") {
   for (const double at : {20.0, -115.0}) {
     const Rod rod(at * degrees);
     for (const double weight : {13.0, -4.1})
@@ -85,7 +85,7 @@ TEST_CASE("the time from rest is the quadrature of the energy, over however many
 }
 
 // x of P is length * cos(angle); what deploys it lies ahead where it comes there from its stowed side.
-TEST_CASE("the deployed pose is the first that is come to from the stowed side, both ways") {
+TEST_CASE("the deployed pose is the first that is come to from the stowed side both ways") {
   for (const double at : {20.0, 75.0, 200.0, -70.0}) {
     const Rod rod(at * degrees);
     Deployment d;

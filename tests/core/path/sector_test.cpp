@@ -211,7 +211,7 @@ TEST_CASE("a ring is followed as a sector to its deployed pose, and has its forc
 // Where the pose is singular the sector's multipliers are lifted: each constraint's own, that of a drive of
 // the whole ring n times the sector's. Extrapolated there from states next to it in both
 // (deployed_event.hpp).
-TEST_CASE("in a singular deployed pose a ring has the forces of its sector, and a drive's for all of them") {
+TEST_CASE("in a singular deployed pose a ring has the forces of its sector and a drive's for all of them") {
   const std::vector<std::string> small{"structure.units=4", "structure.fold_angle=20", "solver.step=0.02",
                                        "structure.model=joints"};
   const std::vector<Ring> rings{

@@ -112,7 +112,7 @@ const Vec3 far(3.1, -1.7, 2.3);
 
 }  // namespace
 
-TEST_CASE("a ring about any axis has its turns, and each entry its images") {
+TEST_CASE("a ring about any axis has its turns and each entry its images") {
   for (const auto& [n, axis, centre, backwards] : std::initializer_list<std::tuple<int, int, Vec3, bool>>{
            {5, 0, far, false}, {3, 1, Vec3::Zero(), true}, {4, 2, far, false}, {7, 1, far, true}}) {
     CAPTURE(n, axis, backwards);
@@ -211,7 +211,7 @@ TEST_CASE("the one entry of a ring that is another is named") {
       }
 }
 
-TEST_CASE("of a ring what is missing, tilted, across, on the axis or only nearly alike is told") {
+TEST_CASE("of a ring what is missing or tilted or across or on the axis or only nearly alike is told") {
   const auto told = [](int n, const std::function<void(Ring&)>& change) {
     return refusal(*Ring{n, 0, far, false, change}.model());
   };

@@ -80,7 +80,7 @@ TEST_CASE("a reference is the first of its solutions that agrees with the one be
 
 // P goes round O on a stretched spring, m v^2 / r = k (r - l): an angle of v t / r. The spring's own swings
 // are too quick for the steps of the extrapolation, which blows up; dvm has none of them.
-TEST_CASE("where the extrapolation blows up dvm is the reference, and what it says of itself is true") {
+TEST_CASE("where the extrapolation blows up dvm is the reference and what it says of itself is true") {
   const double mass = 1.7, radius = 1.25, speed = 2.3, end = 0.9, stiffness = 1e5;
   const Vec3 out(0.6, 0, 0.8), along(0.48, 0.8, -0.36);  // unit vectors, at right angles
   const auto triple = [](const Vec3& v) {

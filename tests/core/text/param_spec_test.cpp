@@ -106,7 +106,7 @@ TEST_CASE("every kind of parameter takes values of its own kind only") {
     }
 }
 
-TEST_CASE("a parameter keeps its name, its unit and what it is for") {
+TEST_CASE("a parameter keeps its name and its unit and what it is for") {
   const ParamSpec specs[] = {
       real_param("p", "m", 3, 2, 8, "how far"), positive_param("p", "m", 3, "how far"),
       integer_param("p", 3, 2, 8, "how far"),   choice_param("p", "b", {"b"}, "how far"),
