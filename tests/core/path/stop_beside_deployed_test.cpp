@@ -46,7 +46,7 @@ end_time = 4
 
 // On a spring x = 1 + cos(t) / 2, until it meets 0.7 at t = acos(-0.6) and is thrown back, or is stopped and
 // pushed off again. Lengths of a metre and two count as the same up to 1e-11 of them.
-TEST_CASE("a stop a nanometre before the deployed pose is met, and not that; one behind it afterwards") {
+TEST_CASE("of a stop and the deployed pose a nanometre apart the nearer one is met first") {
   const double met = std::acos(-0.6);
   for (const std::string model : {"path", "full"})
     for (const std::string at : {"pass", "stop"})
