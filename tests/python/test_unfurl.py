@@ -109,6 +109,13 @@ def test_errors_are_unfurls_own_sentences():
         unfurl.Scene("pendulum", set={"solver.end_time": 0.1}).run().x["B9"]
     with pytest.raises(ValueError, match="a rod names node 7; there are 0 to 1"):
         unfurl.Structure([[0, 0, 0], [1, 0, 0]], [[0, 7]])
+    for fixed, said in (([5], "fixed names node 5; there are 0 to 1"), ([-1], "fixed names node -1"), ([0.0], "fixed are indices"),
+                        ([True], "one True or False for each of 2 nodes")):
+        with pytest.raises(ValueError, match=said):
+            unfurl.Structure([[0, 0, 0], [1, 0, 0]], [[0, 1]], fixed=fixed)
+    held = [unfurl.Structure([[0, 0], [1, 0]], [[0, 1]], fixed=f, gravity=(0, -10, 0), set={"solver.end_time": 0.3}).run().x["n0"]
+            for f in ([0], np.array([True, False]))]
+    assert (held[0] == held[1]).all() and (held[0] == 0).all()
     assert issubclass(unfurl.SceneError, unfurl.Error) and issubclass(unfurl.Error, ValueError)
 
 

@@ -303,6 +303,8 @@ def Structure(nodes, rods, fixed: Sequence[int] = (), mass: float | Sequence[flo
               constraints: Sequence[Mapping[str, Any]] = (), set: Mapping[str, Any] | None = None) -> Scene:
     """A scene of rods between points: nodes (n, 3) or (n, 2), rods (m, 2) of indices from 0, mass of each rod [kg].
 
+    `fixed` are indices of nodes, or one True or False for each.
+
     Nodes are called n0, n1, ...; `constraints` are entries as in a scene, {"kind": "collinear", "nodes": ["n0", "n1", "n2"]};
     further keys, forces too, by `set`. Nodes of two coordinates stay in their plane.
     """
@@ -314,6 +316,15 @@ def Structure(nodes, rods, fixed: Sequence[int] = (), mass: float | Sequence[flo
         raise ValueError(f"rods are rows of two indices of nodes; got the shape {ends.shape}, type {ends.dtype}")
     if ends.size and (ends.min() < 0 or ends.max() >= len(points)):
         raise ValueError(f"a rod names node {ends.max() if ends.max() >= len(points) else ends.min()}; there are 0 to {len(points) - 1}")
+    held = np.asarray(fixed)
+    if held.dtype == bool:
+        if held.shape != (len(points),):
+            raise ValueError(f"fixed has one True or False for each of {len(points)} nodes; got the shape {held.shape}")
+        held = np.flatnonzero(held)
+    if held.size and (held.ndim != 1 or not np.issubdtype(held.dtype, np.integer)):
+        raise ValueError(f"fixed are indices of nodes; got the shape {held.shape}, type {held.dtype}")
+    if held.size and (held.min() < 0 or held.max() >= len(points)):
+        raise ValueError(f"fixed names node {held.max() if held.max() >= len(points) else held.min()}; there are 0 to {len(points) - 1}")
     flat = points.shape[1] == 2
     points = np.column_stack([points, np.zeros(len(points))]) if flat else points
     speeds = None if velocities is None else np.asarray(velocities, dtype=float)
@@ -323,7 +334,7 @@ def Structure(nodes, rods, fixed: Sequence[int] = (), mass: float | Sequence[flo
     table = {"kind": "custom",
              "nodes": [{"name": f"n{i}", "position": p.tolist(), **({} if speeds is None else {"velocity": [*speeds[i], 0.0][:3]})} for i, p in enumerate(points)],
              "rods": [{"nodes": [f"n{a}", f"n{b}"], "mass": float(m)} for (a, b), m in zip(ends, masses)],
-             "constraints": [{"kind": "fixed", "nodes": [f"n{i}"]} for i in fixed]
+             "constraints": [{"kind": "fixed", "nodes": [f"n{i}"]} for i in held.tolist()]
              + ([{"kind": "plane", "nodes": [f"n{i}" for i in range(len(points))], "normal": [0, 0, 1]}] if flat else []) + list(constraints)}
     text = "[structure]\n" + "".join(f"{k} = {_toml(v)}\n" for k, v in table.items())
     text += f"[gravity]\nacceleration = {_toml(list(map(float, gravity)))}\n"
