@@ -289,7 +289,7 @@ TEST_CASE("springs and cables of every sort in one block add up") {
   }
 }
 
-TEST_CASE("what an entry of a kind says is what its force has, in its unit") {
+TEST_CASE("what an entry of a kind says is what its force has in its unit") {
   const double degree = pi / 180;
   using Read = double (*)(const Force&);
   struct Said {

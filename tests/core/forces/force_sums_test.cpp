@@ -251,7 +251,7 @@ TEST_CASE("rods meet at a pin between their ends where relations say that it is 
 
 // A-I-J-B is a rod of 1.2 kg cut in three, beside another one: what I and J weigh hangs on A and B by the
 // lever, or on ropes of their own, and a rope that is aside pulls back by its weight over its length.
-TEST_CASE("ropes carry their nodes, and what lies within a rod by the lever") {
+TEST_CASE("ropes carry their nodes and what lies within a rod by the lever") {
   Structure s;
   s.nodes = {{"C", Vec3(0, 1, 2)},
              {"A", Vec3(0.2, 0.1, 0.5), Vec3::Zero(), 0.3},

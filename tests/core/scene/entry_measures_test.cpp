@@ -57,7 +57,7 @@ double value(const Structure& s, const Measure& measure, const VectorXd& q) {
 
 }  // namespace
 
-TEST_CASE("an angle of rods is that at the node which they share, whichever way each is told and cut") {
+TEST_CASE("an angle of rods is that at the node which they share whichever way each is told and cut") {
   const std::string n = "[0.3, -0.5, 1.2]";
   const Vec3 axis(0.3, -0.5, 1.2);
   for (const bool cut : {false, true})
@@ -94,7 +94,7 @@ TEST_CASE("an angle of rods is that at the node which they share, whichever way 
       }
 }
 
-TEST_CASE("gears, racks and telescopes hold the sums that are written down") {
+TEST_CASE("gears and racks and telescopes hold the sums that are written down") {
   const Structure s = structure_of("[structure]\nkind = 'custom'\n" + nodes + R"(
 [[constraints]]
 kind = "gear"
@@ -166,7 +166,7 @@ rate = -0.2
   CHECK(lines[1]->nodes == std::vector<int>{A, C, B});
 }
 
-TEST_CASE("mirrors, equal coordinates and relations hold where the geometry says, and nowhere else") {
+TEST_CASE("mirrors and equal coordinates and relations hold where the geometry says and nowhere else") {
   const Structure s = structure_of("[structure]\nkind = 'custom'\n" + nodes + R"(
 [[constraints]]
 kind = "mirror"
@@ -334,7 +334,7 @@ TEST_CASE("planes are no supports while nothing pushes the structure out of them
   CHECK_FALSE(flat("", "'A'"));
 }
 
-TEST_CASE("stops have the limits, rebounds and speeds of their entries, in their unit") {
+TEST_CASE("stops have the limits and rebounds and speeds of their entries in their unit") {
   const Structure s = structure_of("[structure]\nkind = 'custom'\n" + nodes + R"(
 [[constraints]]
 kind = "length_stop"

@@ -119,7 +119,7 @@ std::string with(std::string text, const std::string& from, const std::string& t
 }  // namespace
 
 // The third node is in line with the first two: the fourth holds the plane, wherever the shape stands.
-TEST_CASE("an OBJ file of lines is held at three nodes out of line, along them and across") {
+TEST_CASE("an OBJ file of lines is held at three nodes out of line along them and across") {
   const std::vector<Vec3> shape = {{0.1, 0.2, 0.3}, {1.3, 0.8, 0.9}, {2.5, 1.4, 1.5}, {0.7, 2.1, -0.4}};
   for (const Vec3& shift : {Vec3(0, 0, 0), Vec3(5, -3, 2)}) {
     std::string text;
