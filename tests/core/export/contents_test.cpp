@@ -131,6 +131,10 @@ TEST_CASE("a VTU holds the whole structure, bit for bit") {
                types = vtk_array<std::uint8_t>(file, "types");
     REQUIRE(force.size() == e.rods);
     REQUIRE(ends.size() == 2 * e.rods);
+    const auto radius = vtk_array<double>(file, "radius_m");
+    REQUIRE(radius.size() == e.rods);
+    for (std::size_t r = 0; r < e.rods; ++r)
+      CHECK(radius[r] == e.structure.rods[static_cast<std::size_t>(e.structure.rod_copies[r].source)].radius);
     const std::size_t nodes = e.structure.node_copies.size();
     const auto node_names = vtk_array<std::uint8_t>(file, "name"),
                rod_names = vtk_array<std::uint8_t>(file.substr(file.find("<CellData")), "name"),

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "core/export/atomic_file.hpp"
+#include "core/export/run_tables.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
@@ -114,6 +115,40 @@ TEST_CASE("beside each rod force stands whether it is unique, behind all forces"
         run.trajectory.structure().rods[static_cast<std::size_t>(rods[r].source)].group == "post";
     for (std::size_t i = 1; i < rows.size(); ++i) CHECK(rows[i][1 + rods.size() + r] == (post ? "1" : "0"));
   }
+}
+
+TEST_CASE("tables that grow are in the end those that are written at once, also after they were cut") {
+  const Simulation run = short_run("hoop6_sector", {"solver.end_time=0.1", "solver.step=0.01"});
+  const Diagnostics d = diagnose(run);
+  const std::size_t states = run.trajectory.size();
+  const auto folder = std::filesystem::temp_directory_path() / ("unfurl_grow_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  {
+    RunTables tables(folder);
+    tables.add(run.trajectory, d, 0, 3);
+    const RunTables::Sizes three = tables.sizes();
+    CHECK(three.series == std::filesystem::file_size(folder / "series.csv"));
+    CHECK(three.rod_forces == std::filesystem::file_size(folder / "rod_forces.csv"));
+    tables.add(run.trajectory, d, 3, 7);  // of a run that is killed behind its last checkpoint
+    tables.cut(three);
+    CHECK(std::filesystem::file_size(folder / "trajectory.csv") == three.trajectory);
+    tables.add(run.trajectory, d, 3, 5);
+    tables.flush_to_disk();
+  }
+  RunTables(folder).add(run.trajectory, d, 5, states);  // another program goes on
+  const TemporaryFile whole;
+  const auto text = [](const std::filesystem::path& path) {
+    std::ostringstream out;
+    out << std::ifstream(path, std::ios::binary).rdbuf();
+    return out.str();
+  };
+  write_series_csv(whole.path, d);
+  CHECK(text(folder / "series.csv") == text(whole.path));
+  write_trajectory_csv(whole.path, run.trajectory);
+  CHECK(text(folder / "trajectory.csv") == text(whole.path));
+  write_rod_forces_csv(whole.path, run.trajectory, d);
+  CHECK(text(folder / "rod_forces.csv") == text(whole.path));
+  std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("cells that would break the table are quoted") {

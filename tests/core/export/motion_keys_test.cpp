@@ -137,4 +137,39 @@ TEST_CASE("keys are added at the states at which values leave straight lines and
   CHECK(few.times.size() == of_motion.times.size() + 1);
 }
 
+// From 0.5 s on a ramp that bends once more, at a state: straight lines need a key there and no other.
+TEST_CASE("values that bend late in a run have one key more") {
+  const Simulation run = run_scene(spun(0, 1, 0.001));
+  const MotionKeys of_motion = motion_keys(run.trajectory, 0.25, 20000);
+  const double bend = run.trajectory.time(733);
+  MatrixXd values(static_cast<Index>(run.trajectory.size()), 1);
+  for (Index i = 0; i < values.rows(); ++i) {
+    const double t = run.trajectory.time(static_cast<std::size_t>(i));
+    values(i, 0) = 400 - 170 * t + 90000 * std::max(0.0, t - bend);
+  }
+  MotionKeys keys = of_motion;
+  CHECK(add_value_keys(run.trajectory, values, 2, 20000, keys) < 2);
+  const bool there = std::ranges::find(of_motion.times, bend) != of_motion.times.end();
+  CHECK(keys.times.size() == of_motion.times.size() + (there ? 0 : 1));
+  CHECK(std::ranges::find(keys.times, bend) != keys.times.end());
+}
+
+// In flight: g (dt)^2 / 8 is what a straight line is off by in the middle, a thousandth of its way at
+// most.
+TEST_CASE("one node that flies has keys that tell its way") {
+  const Simulation run = run_scene(
+      "[structure]\nkind = 'custom'\nnodes = [{name = 'P', position = [0.3, 0.1, 2], velocity = [1.3, 0, 4], "
+      "mass "
+      "= 1}]\n[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nstages = 4\nstep = 0.2\nend_time = 1.2\n");
+  REQUIRE(run.status == RunStatus::completed);
+  const MotionKeys keys = motion_keys(run.trajectory, 0.5, 20000);
+  CHECK(keys.off <= 1);
+  const double top = 0.5 * 16 / 9.81, end = 4 * 1.2 - 0.5 * 9.81 * 1.44,
+               way = std::hypot(1.3 * 1.2, top - end);
+  for (std::size_t k = 1; k < keys.times.size(); ++k) {
+    const double dt = keys.times[k] - keys.times[k - 1];
+    CHECK(9.81 * dt * dt / 8 < 1e-3 * way);
+  }
+}
+
 }  // namespace motion_keys_test

@@ -2,6 +2,7 @@
 #include "core/export/summary.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -46,6 +47,36 @@ TEST_CASE("the summary has exactly its documented keys") {
   CHECK(keys(s["errors"]) == Names{"constraint_max_m", "constraint_relative_max",
                                    "constraint_velocity_max_m_s", "energy_balance_max_J"});
   CHECK(keys(s["final"]) == Names{"t_s", "positions_m", "velocities_m_s"});
+}
+
+TEST_CASE("a summary tells of each event what is known of that one") {
+  const Scene s = read_scene_file(find_scene("pendulum"), {"solver.end_time=0.05"});
+  Simulation run = simulate(build_model(s), s.solver);
+  run.events = {
+      {.name = "stop A meets", .t = 0.012, .energy_lost = 0.37, .kind = "contact", .element = "stop A"},
+      {.name = "passes a singular pose", .t = 0.023, .singular_value = 2e-4},
+      {.name = "cable pulls", .t = 0.031, .kind = "taut", .element = "cable"},
+      {.name = "stop B meets", .t = 0.041, .energy_lost = -0.02},
+      {.name = "something", .t = 0.045}};
+  const Model& model = run.trajectory.model();
+  const auto told = nlohmann::ordered_json::parse(summary_json(
+      s.name, run, diagnose(run), analyse_mobility(model.system, run.trajectory.node_positions(0))));
+  const auto& events = told["events"];
+  REQUIRE(events.size() == run.events.size());
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Event& event = run.events[i];
+    INFO(event.name);
+    CHECK(events[i]["name"] == event.name);
+    CHECK(events[i]["t_s"] == event.t);
+    CHECK(events[i].value("kind", "") == event.kind);
+    CHECK(events[i].value("element", "") == event.element);
+    CHECK(events[i].value("energy_lost_J", 0.0) == event.energy_lost);
+    CHECK(events[i].contains("kind") == !event.kind.empty());
+    CHECK(events[i].contains("element") == !event.element.empty());
+    CHECK(events[i].contains("energy_lost_J") == (event.energy_lost != 0));
+    CHECK(events[i].contains("singular_value") == !std::isnan(event.singular_value));
+    if (events[i].contains("singular_value")) CHECK(events[i]["singular_value"] == event.singular_value);
+  }
 }
 
 TEST_CASE("the model of the six-unit ring is counted as documented") {
