@@ -257,6 +257,12 @@ TEST_CASE("an exported cone has its normals across its side") {
     CHECK(normal.norm() == Approx(1).epsilon(1e-6));
     CHECK(normal.dot(Vec3(0, 0.5, 0) - base) == Approx(0).epsilon(0).margin(1e-6));
     CHECK(normal.dot(Vec3(base.x(), 0, base.z())) > 0);
+    // At the tip that of the middle of its side: as far from those of both of its corners.
+    const auto of = [&](std::size_t v) {
+      return Vec3(cone.normals[v], cone.normals[v + 1], cone.normals[v + 2]);
+    };
+    const Vec3 tip = of(3 * (i + 1)), next = of(3 * ((i + 2) % 32));
+    CHECK(tip.dot(normal) == Approx(tip.dot(next)).epsilon(1e-5));
   }
 }
 
