@@ -117,7 +117,7 @@ TEST_CASE("beside each rod force stands whether it is unique, behind all forces"
   }
 }
 
-TEST_CASE("tables that grow are in the end those that are written at once, also after they were cut") {
+TEST_CASE("tables that grow are in the end those that are written at once also after they were cut") {
   const Simulation run = short_run("hoop6_sector", {"solver.end_time=0.1", "solver.step=0.01"});
   const Diagnostics d = diagnose(run);
   const std::size_t states = run.trajectory.size();

@@ -216,7 +216,7 @@ TEST_CASE("glTF: the camera sees the last pose whole, and it fills the picture")
 }
 
 // As soft as rubber: 2 kg on 1.5 m of E A = 700 N swing by 4 cm.
-TEST_CASE("glTF: rods that stretch are as long as they are at each key, and others have one length") {
+TEST_CASE("glTF: rods that stretch are as long as they are at each key and others have one length") {
   Shown shown;
   shown.run = testing::run_scene(R"(
 [structure]

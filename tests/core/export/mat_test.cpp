@@ -101,7 +101,7 @@ std::map<std::string, Numbers> numbers_in(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("numbers in a MAT-file are those of the run, column by column") {
+TEST_CASE("numbers in a MAT-file are those of the run column by column") {
   const Simulation run = testing::run_scene(
       "[structure]\nkind = 'hoop'\nmodel = 'sector'\nunits = 4\n[solver]\nstep = 0.02\nend_time = 0.1\n");
   const Diagnostics d = diagnose(run);

@@ -29,7 +29,7 @@ TEST_CASE("factors of matrices without rows or columns are those of nothing") {
 }
 
 // 2 x 2: (a + d) / 2 -+ sqrt((a - d)^2 / 4 + b^2).
-TEST_CASE("eigenvalues of symmetric matrices are the closed form and ascend, with vectors or without") {
+TEST_CASE("eigenvalues of symmetric matrices are the closed form and ascend with vectors or without") {
   const double a = 1.7, b = -0.6, d = 0.4, middle = (a + d) / 2, off = std::hypot((a - d) / 2, b);
   MatrixXd A(2, 2);
   A << a, b, b, d;

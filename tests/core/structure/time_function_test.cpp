@@ -114,7 +114,7 @@ TEST_CASE("what is made a jump is behind it what it was") {
 
 // A spike of 5 between what falls to 0 and what falls to -4 is not made up by one jump of the same area
 // within its flank; of neighbours a thousand times as long as that the share that it costs is a thousandth.
-TEST_CASE("a line that jumps keeps its area, or is said not to where that can be seen") {
+TEST_CASE("a line that jumps keeps its area or is said not to where that can be seen") {
   const auto line = [](double before, double flank, double behind, const std::vector<double>& values) {
     TimeFunction f;
     f.kind = TimeFunction::Kind::linear;
