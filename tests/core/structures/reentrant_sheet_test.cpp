@@ -41,6 +41,18 @@ TEST_CASE("a re-entrant sheet widens as its energy quadrature says, with the Poi
     const auto& ratio = d.at("poisson_ratio").values;
     for (std::size_t i = 0; i < ratio.size(); i += 20)  // at rest, too, where the motion only begins
       CHECK(ratio[i] == Approx(sheet.poisson(d.at("fold_angle_rad").values[i])).epsilon(1e-9));
+    // Pressed together it is the same ratio, of rates of the other sign.
+    const Changes pressing = {{"rows", rows},
+                              {"columns", columns},
+                              {"fold_angle", 65.0},
+                              {"deployed_angle", 7.0},
+                              {"stretch_force", -p.real("stretch_force")}};
+    const Diagnostics back = diagnose(simulate(make_model(family_structure("reentrant_sheet", pressing)),
+                                               dvm_options(5, end / 200, 0.2 * end)));
+    const auto& pressed = back.at("poisson_ratio").values;
+    for (std::size_t i = 0; i < pressed.size(); i += 10)
+      CHECK(pressed[i] == Approx(sheet.poisson(back.at("fold_angle_rad").values[i])).epsilon(1e-9));
+    CHECK(back.at("fold_angle_rad").values.back() > back.at("fold_angle_rad").values.front());
     CHECK(d.at("column_pitch_m").values.back() ==
           Approx(2 * p.real("chord_rod_length") * std::cos(7 * radians_per_degree)).epsilon(1e-10));
   }
