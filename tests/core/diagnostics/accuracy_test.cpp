@@ -10,6 +10,7 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/reader.hpp"
+#include "core/simulate/initial_state.hpp"
 #include "tests/support/models.hpp"
 
 using namespace unfurl;
@@ -264,6 +265,38 @@ TEST_CASE("constraints that are lost end a run") {
   CHECK(run.status == RunStatus::failed);
   CHECK(run.events.empty());
   for (const double x : d.at("constraint_relative_max").values) CHECK(x <= trusted_share);
+}
+
+// Two rods far from the origin, the second of which turns about its first end; the frame is 1.5 m long.
+TEST_CASE("what quasi-static rods move is a share of the structure and not of where it stands") {
+  Structure s;
+  s.nodes = {{"O", {7, -3, 2}, Vec3::Zero(), 1.0},
+             {"A", {8.5, -3, 2}, Vec3::Zero(), 1.0},
+             {"B", {8.5, -2.2, 2.9}, {0.4, 0.54, -0.48}, 1.0}};
+  for (const auto& [a, b] : {std::pair{0, 1}, {1, 2}}) {
+    Rod rod;
+    rod.a = a, rod.b = b,
+    rod.length =
+        (s.nodes[static_cast<std::size_t>(b)].position - s.nodes[static_cast<std::size_t>(a)].position)
+            .norm();
+    s.rods.push_back(rod);
+  }
+  const auto model = make_model(s, false);
+  Trajectory run(model);
+  State state = initial_state(model->structure, model->system).state;
+  for (const double t : {0.0, 0.1, 0.2}) {
+    state.t = t;
+    run.append(state, StepReport{});
+    VectorXd u = VectorXd::Zero(9);
+    u[5] = -0.03 * (1 + t * (0.3 - t)), u[1] = 0.011;
+    run.add_stretch(run.size() - 1, u);
+  }
+  CHECK(stretch_share(run, 0) == Approx(0.03 / 1.5).epsilon(1e-14));
+  const auto [most, at] = largest_of_states(run, stretch_share);
+  CHECK(at == 1);
+  CHECK(most == Approx(0.03 * 1.02 / 1.5).epsilon(1e-14));
+  const StateSize falling = [](const Trajectory& t, std::size_t i) { return 2.5 - t.time(i); };
+  CHECK(largest_of_states(run, falling) == std::pair<double, std::size_t>(2.5, 0));
 }
 
 }  // namespace accuracy_test
