@@ -408,7 +408,7 @@ end_time = 1
   CHECK(lost(run, "latched") == Approx(0.5 * turned.squaredNorm()).epsilon(1e-9));
 }
 
-TEST_CASE("what remains to a deployed fold angle is the sine of the difference, with offsets") {
+TEST_CASE("what remains to a deployed fold angle is the sine of the difference with all offsets") {
   Deployment d;
   d.fold_sine = {{0, 2}, {Vec3(0.3, -0.7, 1.1), Vec3(0.9, 0.2, -0.4)}, 0.31};
   d.fold_cosine = {{1, 2}, {Vec3(-0.6, 0.8, 0.5), Vec3(1.2, -0.1, 0.7)}, -0.47};
