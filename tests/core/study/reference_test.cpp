@@ -59,6 +59,26 @@ TEST_CASE("one node alone has a reference, moving or at rest") {
   CHECK(fallen.size == Approx(0.5 * 9.81 * 0.01 - 0.3 * 0.1).epsilon(1e-12));
 }
 
+// Far from the origin, on either side of it, and where all nodes are in one place.
+TEST_CASE("the size of a structure is how far its nodes lie apart along an axis or how far one goes") {
+  const auto model = [](const std::string& nodes) {
+    return build_model(read_scene_text(
+        "[structure]\nkind = 'custom'\nnodes = [" + nodes + "]\n[gravity]\nacceleration = [0, 0, -9.81]\n",
+        "size.toml", {}));
+  };
+  const auto two = model(
+      "{name = 'A', position = [7.5, -3, 2], mass = 1}, {name = 'B', position = [6, -3.5, 4.25], mass = 1}, "
+      "{name = 'C', position = [6.5, -3.25, 3], mass = 1}");
+  CHECK(structure_size(*two) == 2.25);
+  SolverOptions options = dvm_options(3, 0.05, 0.4);
+  const Simulation both = simulate(two, options);
+  CHECK(size_of_motion(*two, both.trajectory) == 2.25);
+  const auto one = model("{name = 'A', position = [7.5, -3, 2], mass = 1, velocity = [0, 0, 1.1]}");
+  CHECK(structure_size(*one) == 0);
+  const Simulation fall = simulate(one, options);
+  CHECK(size_of_motion(*one, fall.trajectory) == Approx(0.5 * 9.81 * 0.16 - 0.44).epsilon(1e-12));
+}
+
 TEST_CASE("references of a whole ring, in which errors grow, are certain to round-off at every step") {
   // As above, over a chord's 3 m: 1e-13 m of the start, and by the rounding of every step or of a
   // constraint's value as much again where they are not carried.
