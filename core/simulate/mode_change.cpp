@@ -386,7 +386,8 @@ class Change {
   void hold_resting() {
     std::vector<Index> order(static_cast<std::size_t>(count()));
     std::iota(order.begin(), order.end(), Index{0});
-    if (std::ranges::any_of(order, [this](Index r) { return crossed(r) && at_limit(r); }))
+    const auto asks = [this](Index r) { return crossed(r) && (at_limit(r) || sides_.is_stop(side(r))); };
+    if (std::ranges::any_of(order, asks))
       for (const Index r : order)
         if (at_limit(r)) give_way(r);
     std::stable_partition(order.begin(), order.end(),
@@ -394,10 +395,9 @@ class Change {
     for (const Index r : order) {
       const auto k = static_cast<std::size_t>(r);
       if (!rests_[k] || solution_.held[k] || !wants(r) || solution_.w[r] > zero_acceleration(r)) continue;
-      if (independent(D_, solution_.held, r))
-        solution_.held[k] = true;
-      else if (sides_.is_stop(side(r)))
-        take_over(r);
+      const bool free = independent(D_, solution_.held, r);
+      if (free) solution_.held[k] = true;
+      if (!free && sides_.is_stop(side(r))) take_over(r);
     }
   }
 

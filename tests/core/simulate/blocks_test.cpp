@@ -91,4 +91,34 @@ TEST_CASE("blocks that have met rest by friction and stop until statics knows no
     }
 }
 
+// The stop is touched without a force until the friction of A bears all that it can, and takes the rest then;
+// B could not bear all that A's friction does besides its own load.
+TEST_CASE("friction that bears all it can leaves what grows to a stop that was touched before") {
+  const double alone = 2.1, other = 3.3, load = 1.4, growth = 4.2, slips = (alone + other - load) / growth;
+  REQUIRE(load + alone > other);
+  for (const int sense : {1, -1}) {
+    const Simulation run = run_scene(
+        "[structure]\nkind = 'custom'\nrods = []\nnodes = [{name = 'A', position = [0, 0, 0], mass = 0.7}, "
+        "{name = "
+        "'B', position = [" +
+        number(sense) +
+        ", 0, 0], mass = 1.1}]\n[[constraints]]\nkind = 'line'\nnodes = ['A', 'B']\ndirection = "
+        "[1, 0, 0]\n[[constraints]]\nkind = 'length_stop'\nname = 'stop'\nnodes = ['A', 'B']\nmin = 1\n"
+        "[[forces]]\nkind = 'friction'\nname = 'a'\nnodes = ['A']\ndirection = [1, 0, 0]\nkinetic = " +
+        number(alone) +
+        "\n[[forces]]\nkind = 'friction'\nname = 'b'\nnodes = ['B']\ndirection = [1, 0, 0]\nkinetic = " +
+        number(other) + "\n[[loads]]\nnodes = ['B']\nforce = [" + number(sense * load) +
+        ", 0, 0]\n[[forces]]\nkind = 'load_over_time'\nnodes = ['A']\nforce = [" + number(sense) +
+        ", 0, 0]\ntimes = [0, 9]\nvalues = [0, " + number(9 * growth) +
+        "]\n[solver]\nend_time = " + number(slips + 0.3) + "\n");
+    CAPTURE(sense, run.message);
+    REQUIRE(run.status == RunStatus::completed);
+    CHECK(run.warnings == std::vector<std::string>{});
+    CHECK(run.events.size() < 9);  // a's limit, the stop, both that slip
+    for (const Index x : {0, 3})
+      CHECK(sense * end_positions(run)[x] ==
+            Approx(static_cast<double>(x) / 3 + growth * 0.027 / (6 * 1.8)).epsilon(0).margin(1e-8));
+  }
+}
+
 }  // namespace blocks_test
