@@ -101,13 +101,13 @@ node, rod, length = done.stdout.split()
 assert node == names[0] and abs(float(length) - 3) < 1e-11, done.stdout  # a chord of the paper's ring is 3 m
 print("mat: equal to the tables in Octave, bit for bit")
 
-def dom(file, time, gl=("--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")):
-    for _ in range(3):  # on a busy machine it may be told before the page's script has run
+def dom(file, time, gl=("--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"), there="at pixel"):
+    for _ in range(5):  # on a busy machine it may be told before the page's script has run
         page = subprocess.run(
             ["chromium", "--headless", "--no-sandbox", *gl,
              "--window-size=1000,700", "--virtual-time-budget=4000", "--dump-dom", f"file://{file}#t={time}&positions"],
             capture_output=True, text=True, timeout=90).stdout
-        if "at pixel" in page:
+        if re.search(there, page):
             break
     return page
 
@@ -138,10 +138,10 @@ print("html: marks of events are below the slider at their times")
 # Without WebGL 2 the figures are drawn as the page says.
 with open(f"{out}/viewer.html") as page, open(f"{out}/flat.html", "w") as probe:
     probe.write(page.read().replace("</body>", """<p id="probe"></p><script>
-setTimeout(() => { $("probe").textContent = (gl ? "with" : "without") + " gl painted " +
-  [...document.querySelectorAll(".plot canvas")].map(c => c.getContext("2d").getImageData(0, 0, c.width, c.height).data.filter(x => x > 0).length); }, 500);
+setInterval(() => { $("probe").textContent = (gl ? "with" : "without") + " gl painted " +
+  [...document.querySelectorAll(".plot canvas")].map(c => c.getContext("2d").getImageData(0, 0, c.width, c.height).data.filter(x => x > 0).length); }, 200);
 </script></body>"""))
-painted = re.search(r">without gl painted (\d+),(\d+)<", dom(f"{out}/flat.html", 4.5, ["--disable-3d-apis"]))
+painted = re.search(r">without gl painted (\d+),(\d+)<", dom(f"{out}/flat.html", 4.5, ["--disable-3d-apis"], r"painted [1-9]\d*,[1-9]"))
 assert painted and min(map(int, painted.groups())) > 1000, painted
 print("html: without WebGL 2 its figures are drawn")
 
