@@ -14,6 +14,7 @@
 #include "core/math/saddle_solver.hpp"
 #include "core/simulate/one_sided.hpp"
 #include "core/simulate/push_responses.hpp"
+#include "core/simulate/step_control.hpp"
 
 namespace unfurl {
 namespace {
@@ -193,8 +194,10 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
   if (!method || method->claims(options).damps) return {};
   const FastestPeriods periods = fastest_periods(model, start);
   const double period = periods.of_rods;
-  const bool followed = options.adaptive && !bends(model.structure);  // by StepControl
-  const std::string springs = followed ? "" : spring_step_warning(periods.on_springs, options);
+  SolverOptions first = options;
+  if (options.adaptive && !bends(model.structure) && std::isfinite(periods.on_springs))
+    first.step = StepControl(model.structure, model.system, options).next(start);
+  const std::string springs = spring_step_warning(periods.on_springs, first);
   if (!(options.step > followed_share * period)) return springs;
   std::ostringstream text;
   text.precision(3);
