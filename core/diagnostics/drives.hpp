@@ -19,10 +19,13 @@ struct DriveSample {
 };
 
 class DriveChannel {
+  enum class Kind { row, reel, motor, winch };
+
  public:
   const std::string& name() const { return name_; }  // unique
   int cable() const { return cable_; }  // that is reeled, by its side among the stops; -1: none is
   bool angle() const { return angle_; }
+  bool by_row() const { return kind_ == Kind::row || kind_ == Kind::reel; }  // multipliers tell its effort
   // At the node coordinates and velocities of a time; lambda: multipliers of the model's rows.
   DriveSample sample(const Model& model, const System& system, double t, const VectorXd& q, const VectorXd& v,
                      const VectorXd& lambda) const;
@@ -33,9 +36,7 @@ class DriveChannel {
   bool unique(const Model& model, const std::vector<char>& rows) const;
 
  private:
-  enum class Kind { row, reel, motor, winch };
   friend std::vector<DriveChannel> drive_channels(const Model& model);
-  bool by_row() const { return kind_ == Kind::row || kind_ == Kind::reel; }
   int row(const Model& model) const;  // -1: slack
   DriveSample of_row(const Model& model, double t, const VectorXd& lambda) const;
 

@@ -306,13 +306,13 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   if (idle()) return;
   before_ = fresh_ && last_ == a.t ? std::move(after_) : at_state(a);
   after_ = at_b.known ? std::move(at_b) : at_state(b);
-  fresh_ = true;
-  last_ = b.t;
+  fresh_ = true, last_ = b.t;
   const double h = b.t - a.t;
   const Index told = b.stage_tension.cols();
   if (told > 0 && told != own_.nodes.size()) own_ = gauss_legendre(static_cast<int>(told));
   rods_apart_ = dampers_ && told > 0 && b.tension.size() > 0;
-  const Index points = by_tension_ ? told : 0;
+  const Index points = by_tension_ ? told : 0, giving = std::ssize(system_.giving_rods());
+  const bool by_step = drives_ && told > 0 && b.stage_tension.rows() == giving + lambda_.size();
   const double by_friction = taken(b) - taken(a);
   system_.follow(a);
   const double by_rods = rods_apart_ ? damped_rods_.taken(system_, a, b, own_) : 0.0;
@@ -322,7 +322,7 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
   const std::vector<double> points_inside = drives_ ? tables_.points_within(a.t, b.t) : std::vector<double>();
   const bool split = !points_inside.empty();
   const Ends trusted = stiff ? trusted_ends(a, b) : Ends{};
-  if (split)  // accelerations that alternate from point to point of a table tell no motion of a whole step
+  if (split || by_step)  // accelerations of single points of a table, or of waves, tell no motion of a step
     std::tie(by_a_, by_b_) = cubic_ends(a, b);
   else if (!stiff)
     smooth_ends(a, b);
@@ -345,9 +345,11 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
     const VectorXd z = motion.value(u);
     VectorXd w = motion.rate(u);
     if (points > 0) tension = split ? between_stages(b, u) : VectorXd(b.stage_tension.col(i));
+    if (by_step) lambda_ = tension.tail(lambda_.size()), tension.conservativeResize(giving);
     if (at_end) lambda_ = i == 0 ? before_.lambda : after_.lambda;
-    const bool known = drives_ && (at_end || (split ? index1_->evaluate_on(t, z, w, unused_, lambda_, tension)
-                                                    : index1_->evaluate(t, z, w, unused_, lambda_, tension)));
+    const bool known = drives_ && (at_end || by_step ||
+                                   (split ? index1_->evaluate_on(t, z, w, unused_, lambda_, tension)
+                                          : index1_->evaluate(t, z, w, unused_, lambda_, tension)));
     system_.expand(z, q_);
     system_.expand_rate(w, v_);
     const double* const pulls = points > 0 ? tension.data() : nullptr;

@@ -33,7 +33,8 @@ bool motors_or_warmed(const Structure& structure);
 // equations at those points, or at four Lobatto points, of which two are the states, where nothing but drives
 // puts in energy. Where rods give and a step does not resolve their waves, lengths between states do not tell
 // forces: the Gauss points are then the step's own, with the axial forces that it has found there, and what
-// dampers of these rods take is that of the step's own rates (damped_rods.hpp). Where the
+// dampers of these rods take is that of the step's own rates (damped_rods.hpp). Where it does not resolve the
+// waves of other forces, either, as of rods that bend, the multipliers are the step's own, too. Where the
 // table of a drive has points within a step, between which what it asks for bends faster than that quadrature
 // follows, it is taken between these points, on the cubic through coordinates and rates and at the rates that
 // the table prescribes. Where

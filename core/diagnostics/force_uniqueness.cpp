@@ -222,6 +222,27 @@ void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
   }
 }
 
+// Of each state, 1: waves of forces that the step does not resolve change what a drive gives there, by what
+// its step's multipliers say otherwise.
+std::vector<char> driven_by_waves(const Trajectory& trajectory, const DriveChannel& drive, Diagnostics& d) {
+  constexpr double small = 0.01;
+  std::vector<char> out(d.t.size(), 0);
+  const std::vector<double>* const column =
+      values_of(d, drive.name() + (drive.angle() ? ".torque_N_m" : ".force_N"));
+  if (!column || !drive.by_row()) return out;
+  double most = 0;
+  for (const double effort : *column) most = std::max(most, std::abs(effort));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const State& state = trajectory.state(i);
+    const Model& model = trajectory.model(i);
+    const Index rods = std::ssize(model.system.giving_rods()), rows = state.lambda.size();
+    if (rows == 0 || state.stage_tension.rows() != rods + rows) continue;
+    const double by_step = drive.sample(model, model.system, state.t, {}, {}, state.lambda).effort;
+    out[i] = std::abs(by_step - (*column)[i]) > small * most ? 1 : 0;
+  }
+  return out;
+}
+
 }  // namespace
 
 void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
@@ -235,11 +256,11 @@ void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness
   for (const DriveChannel& drive : drive_channels(trajectory.model()))
     if (std::vector<double>* const column =
             values_of(d, drive.name() + (drive.angle() ? ".torque_unique" : ".force_unique")))
-      for (std::size_t i = 0; i < column->size(); ++i)
-        (*column)[i] = drive.unique(trajectory.model(i), open[i] ? none : uniqueness.at(i)) &&
-                               uniqueness.unique_without_row(i, drive.cable())
-                           ? 1.0
-                           : 0.0;
+      for (std::size_t i = 0; const char waves : driven_by_waves(trajectory, drive, d)) {
+        const bool unique = drive.unique(trajectory.model(i), open[i] ? none : uniqueness.at(i)) &&
+                            uniqueness.unique_without_row(i, drive.cable());
+        (*column)[i++] = unique && !waves ? 1.0 : 0.0;
+      }
 }
 
 void leave_unique_open(Diagnostics& d) {

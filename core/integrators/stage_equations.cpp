@@ -102,6 +102,17 @@ double StageEquations::h_omega() const {
   return std::abs(h) * omega_;
 }
 
+double StageEquations::other_h_omega() {
+  const Index j = c.tau.size() - 1;
+  move_to(j);
+  SparseRows by_z, by_w;
+  if (rods.any())
+    system.force_derivatives(t + c.tau[j] * h, q_tau_, v_tau_, rods.tension.col(j), by_z, by_w);
+  else
+    system.force_derivatives(t + c.tau[j] * h, q_tau_, v_tau_, by_z, by_w);
+  return std::abs(h) * std::sqrt(rate_bound(by_z, system.moving_mass()));
+}
+
 double StageEquations::h_rate() const {
   return std::abs(h) * rate_;
 }
@@ -224,6 +235,12 @@ MatrixXd StageEquations::stage_tension(double beyond) {
       out.col(j) = tension;
   }
   return out;
+}
+
+void StageEquations::add_multipliers(const VectorXd& last, MatrixXd& tension) const {
+  const Index rods_above = tension.rows();
+  tension.conservativeResize(rods_above + last.size(), c.tau.size());
+  tension.bottomRows(last.size()) = lambda * c.value.topRows(c.s - 1) + last * c.value.row(c.s - 1);
 }
 
 bool StageEquations::held() {

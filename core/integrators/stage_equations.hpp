@@ -63,6 +63,7 @@ class StageEquations {
   }
   double h_omega() const;  // h sqrt(k / m) of the stiffest spring, from above
   double h_rate() const;   // h c / m of the strongest damper, from above
+  double other_h_omega();  // as h_omega(), of all but rods that give, near the step's end (allocates)
   // Axial forces of the rods that give at the step's end, with velocity w_1: by the polynomial through those
   // at the points of the quadrature for rods of h omega > `resolved`, whose waves are not resolved, so that
   // the end's coordinates do not tell them; else by their lengths. By the motion, for which they are rigid,
@@ -73,6 +74,9 @@ class StageEquations {
   // At the points of the quadrature, as powers take them: with fewer than four stages by the motion for rods
   // of h omega > `beyond`.
   MatrixXd stage_tension(double beyond);
+  // Puts below these rows the multipliers there, by the polynomial through those of the nodes; `last` are
+  // those of the end.
+  void add_multipliers(const VectorXd& last, MatrixXd& tension) const;
   // Whether the constraints leave no motion free (looked for once, at the present start, and not in
   // structures of many coordinates): lengths are what drives make them, and tell forces whatever the step.
   bool held();

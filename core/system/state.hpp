@@ -19,7 +19,8 @@ struct State {
   VectorXd angles =
       {};  // FollowedAngles (measure.hpp), counted on from turn to turn [rad]; none: those at t = 0
   // The axial forces at the Gauss points of the step that ended here [rods that give x points], where the
-  // step had them as unknowns and powers depend on them; empty: lengths tell [N].
+  // step had them as unknowns and powers depend on them; empty: lengths tell [N]. Below them, where drives
+  // work beside other forces whose waves the step does not resolve, the multipliers of the constraints.
   MatrixXd stage_tension = {};
 };
 
