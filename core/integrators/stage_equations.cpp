@@ -107,7 +107,8 @@ double StageEquations::other_h_omega() {
   move_to(j);
   SparseRows by_z, by_w;
   if (rods.any())
-    system.force_derivatives(t + c.tau[j] * h, q_tau_, v_tau_, rods.tension.col(j), by_z, by_w);
+    system.force_derivatives(t + c.tau[j] * h, q_tau_, v_tau_, VectorXd::Zero(rods.tension.rows()), by_z,
+                             by_w);
   else
     system.force_derivatives(t + c.tau[j] * h, q_tau_, v_tau_, by_z, by_w);
   return std::abs(h) * std::sqrt(rate_bound(by_z, system.moving_mass()));
@@ -194,6 +195,8 @@ void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd&
     move_to(j);
     rods.take_from_lengths(j, t + c.tau[j] * h, q_tau_, v_tau_);
   }
+  const std::vector<Index> stopped = rods.held();
+  const bool by_motion = (c.s < fewest_that_tell || !stopped.empty()) && other_h_omega() <= resolved;
   q_tau_ = Q.col(c.s - 1);
   system.expand_rate(w_1, v_tau_);
   tension.resize(rods.tension.rows());
@@ -202,8 +205,7 @@ void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd&
   const SparseRows directions = system.giving_rod_directions(q_tau_);
   for (Index i = 0; i < tension.size(); ++i)
     if (rods.h_omega(i, h, directions) > resolved) tension[i] = rods.tension.row(i).dot(c.tau_to_end);
-  const std::vector<Index> stopped = rods.held();
-  if (!told_by_motion(t + h, directions, resolved, tension) && !stopped.empty())
+  if (by_motion && !told_by_motion(t + h, directions, resolved, tension) && !stopped.empty())
     rods.find_still_forces(t + h, q_tau_, v_tau_, tension);
   error.setZero(tension.size());
   for (Index i = 0; i < tension.size(); ++i)

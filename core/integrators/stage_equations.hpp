@@ -68,8 +68,10 @@ class StageEquations {
   // at the points of the quadrature for rods of h omega > `resolved`, whose waves are not resolved, so that
   // the end's coordinates do not tell them; else by their lengths. By the motion, for which they are rigid,
   // those of rods that are held still and, with fewer than four stages, of all that are not resolved: there
-  // the points of the quadrature do not tell them. `error`: what waves that are neither resolved nor stopped
-  // may change of them, by what lengths say otherwise and by the rate at which these change over omega [N].
+  // the points of the quadrature do not tell them; not so beside waves of other forces that are not resolved,
+  // which the end's coordinates do not tell, either. `error`: what waves that are neither resolved nor
+  // stopped may change of them, by what lengths say otherwise and by the rate at which these change over
+  // omega [N].
   void end_tension(const VectorXd& w_1, double resolved, VectorXd& tension, VectorXd& error);
   // At the points of the quadrature, as powers take them: with fewer than four stages by the motion for rods
   // of h omega > `beyond`.
