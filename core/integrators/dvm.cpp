@@ -437,7 +437,7 @@ void Dvm::finish(State& state, double h, StepReport& report) {
     state.stage_tension = unresolved ? eq_.stage_tension(unheld) : eq_.rods.tension;
   if (unresolved) eq_.end_tension(w1_, followed, state.tension, state.tension_error);
   if (damped && !eq_.rods.as_unknowns) state.stage_tension = eq_.rods.tension;  // by lengths there
-  if (system_.rheonomic() && !eq_.at_ends && eq_.h_omega() > followed && eq_.other_h_omega() > followed &&
+  if (system_.rheonomic() && !eq_.at_ends && eq_.h_omega() > followed && eq_.others_unresolved(followed) &&
       !eq_.held()) {
     if (state.stage_tension.size() == 0) state.stage_tension = eq_.rods.tension;
     eq_.add_multipliers(state.lambda, state.stage_tension);

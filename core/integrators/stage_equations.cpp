@@ -102,7 +102,11 @@ double StageEquations::h_omega() const {
   return std::abs(h) * omega_;
 }
 
-double StageEquations::other_h_omega() {
+// Where the step has looked at its start, with what rods pull across, that may tell already.
+bool StageEquations::others_unresolved(double resolved) {
+  const VectorXd m = system.moving_mass();
+  if (rods.as_unknowns && looked_ == t && std::abs(h) * std::sqrt(rate_bound(by_z_, m)) <= resolved)
+    return false;
   const Index j = c.tau.size() - 1;
   move_to(j);
   SparseRows by_z, by_w;
@@ -111,7 +115,7 @@ double StageEquations::other_h_omega() {
                              by_w);
   else
     system.force_derivatives(t + c.tau[j] * h, q_tau_, v_tau_, by_z, by_w);
-  return std::abs(h) * std::sqrt(rate_bound(by_z, system.moving_mass()));
+  return std::abs(h) * std::sqrt(rate_bound(by_z, m)) > resolved;
 }
 
 double StageEquations::h_rate() const {
@@ -196,7 +200,7 @@ void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd&
     rods.take_from_lengths(j, t + c.tau[j] * h, q_tau_, v_tau_);
   }
   const std::vector<Index> stopped = rods.held();
-  const bool by_motion = (c.s < fewest_that_tell || !stopped.empty()) && other_h_omega() <= resolved;
+  const bool by_motion = (c.s < fewest_that_tell || !stopped.empty()) && !others_unresolved(resolved);
   q_tau_ = Q.col(c.s - 1);
   system.expand_rate(w_1, v_tau_);
   tension.resize(rods.tension.rows());

@@ -63,7 +63,8 @@ class StageEquations {
   }
   double h_omega() const;  // h sqrt(k / m) of the stiffest spring, from above
   double h_rate() const;   // h c / m of the strongest damper, from above
-  double other_h_omega();  // as h_omega(), of all but rods that give, near the step's end (allocates)
+  // Whether h omega, from above, of any force but those of rods that give is more (allocates).
+  bool others_unresolved(double resolved);
   // Axial forces of the rods that give at the step's end, with velocity w_1: by the polynomial through those
   // at the points of the quadrature for rods of h omega > `resolved`, whose waves are not resolved, so that
   // the end's coordinates do not tell them; else by their lengths. By the motion, for which they are rigid,
