@@ -122,11 +122,12 @@ GoodPart good_part(const Simulation& run, const Diagnostics& d) {
   const std::size_t judged = d.t.size() - d.left_open;
   const Series &balance = d.at("energy_balance_J"), &stretch = d.at("constraint_relative_max");
   const auto columns = energies(d);
-  std::vector<double> round_off_error;  // asked for where it could make a difference
+  std::vector<double> round_off_error, stopped;  // asked for where they could make a difference
   const auto within = [&](double off, double energy, std::size_t i) {
     if (off <= trusted_share * energy) return true;
-    if (round_off_error.empty()) round_off_error = energy_round_off(run);
-    return off <= trusted_share * energy + round_off_error[i];
+    if (round_off_error.empty())
+      round_off_error = energy_round_off(run), stopped = energy_of_stopped_waves(run);
+    return off <= trusted_share * energy + round_off_error[i] + stopped[i];
   };
   EnergyTurnedOver turned;
   GoodPart part;
@@ -431,8 +432,10 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
   const double off = largest_magnitude(d.at("energy_balance_J").values), turned = energy_turned_over(d);
   std::ostringstream text;
   text.precision(3);
-  const double round_off = off <= energy_share * turned ? 0.0 : energy_round_off(run).back();
-  if (!(off <= energy_share * turned + round_off)) {
+  const bool within = off <= energy_share * turned;
+  const double round_off = within ? 0.0 : energy_round_off(run).back(),
+               stopped = within ? 0.0 : energy_of_stopped_waves(run).back();
+  if (!(off <= energy_share * turned + round_off + stopped)) {
     BalanceError rise(damps(run));
     for (const double balance : d.at("energy_balance_J").values) rise.add(balance);
     if (rise.value() < 0.5 * off)
@@ -447,8 +450,11 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
     warnings.push_back(text.str());
   } else if (off > energy_share * turned && moves(run)) {
     text << "the energy balance is off by " << off << " J, " << percent_of(off, turned)
-         << " of the energy turned over, which rounding alone can do here: forces or coordinates are too "
-            "large beside this motion for the balance to check it";
+         << " of the energy turned over, which "
+         << (off > energy_share * turned + round_off
+                 ? "waves of stiff rods can have had that the steps stop"
+                 : "rounding alone can do here: forces or coordinates are too large beside this motion for "
+                   "the balance to check it");
     warnings.push_back(text.str());
   }
   const double stretch = largest_magnitude(d.at("constraint_relative_max").values);

@@ -56,4 +56,23 @@ std::vector<double> energy_round_off(const Simulation& run) {
   return out;
 }
 
+std::vector<double> energy_of_stopped_waves(const Simulation& run) {
+  const Trajectory& trajectory = run.trajectory;
+  std::vector<double> out;
+  double most = 0;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const VectorXd& tension = trajectory.state(i).tension;
+    const Model& model = trajectory.model(i);
+    double stored = 0;
+    for (Index k = 0; k < tension.size(); ++k) {
+      const int rod = model.system.giving_rods()[static_cast<std::size_t>(k)];
+      stored +=
+          0.5 * model.structure.rods[static_cast<std::size_t>(rod)].compliance() * tension[k] * tension[k];
+    }
+    most = stored > most && std::isfinite(stored) ? stored : most;
+    out.push_back(4 * most * trajectory.structure().sectors);
+  }
+  return out;
+}
+
 }  // namespace unfurl
