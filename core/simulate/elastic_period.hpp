@@ -19,7 +19,7 @@ double fastest_elastic_period(const Model& model, const State& state);
 // What is said where the steps of a run are longer than a quarter of that period, with both numbers and what
 // there is to choose; empty: nothing. Of a method that damps what it does not resolve, nothing. Of what
 // swings on springs, more stages of dvm follow in a longer step what fewer would not, and adaptive steps what
-// their first one follows.
+// their first one goes by.
 std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options);
 
 // The same of cable i, which begins to pull: of how what it holds back swings on it. More stages of dvm

@@ -28,12 +28,16 @@ StepControl::StepControl(const Structure& structure, const System& system, const
       q_(system.coordinates()),
       v_(system.coordinates()),
       a_(system.coordinates()),
-      f_(system.coordinates()) {}
+      f_(system.coordinates()),
+      moving_mass_(system.moving_mass()) {}
 
 // w . K w over w . M w for x = w or h_0 w', whichever way the energy is, of forces that vary with the pose,
 // damped by as much of them as varies with rates; rods that give are left to methods that stop their waves.
+// Nothing where a swing is too small to matter: with r = K x its frequency is (r . M^-1 r / x . r)^1/2, and
+// its amplitude max |r_i| / m_i over the third power of that for x = w, over the fourth for x = w'.
 double StepControl::swing(const State& state) {
-  constexpr double small = 1e-6;  // of a length, of a rate: rounding leaves 1e-10 of a stretch
+  constexpr double small = 1e-6;    // of a length, of a rate: rounding leaves 1e-10 of a stretch
+  constexpr double matters = 1e-6;  // of a length, an amplitude
   if (system_.constant_forces() || bends_) return 0;
   const VectorXd still = VectorXd::Zero(system_.elastic_rods() ? std::ssize(system_.giving_rods()) : 0);
   const auto add = [&](const VectorXd& q, const VectorXd& v, double scale) {
@@ -42,21 +46,29 @@ double StepControl::swing(const State& state) {
     else
       system_.add_applied_force(state.t, q, v, scale, f_);
   };
-  double stiffness = 0, damping = 0, mass = 0;
-  const auto look_along = [&](const VectorXd& x, const VectorXd& w, double weight) {
+  double stiffness = 0, damping = 0, mass = 0, square_of_force = 0, most[2] = {};
+  VectorXd r(state.w.size());
+  const auto look_along = [&](const VectorXd& x, const VectorXd& w, double weight, double& largest) {
     const double size = x.lpNorm<Eigen::Infinity>();
     if (!(size > 0)) return;
     const double d = small * length_ / size;
     f_.setZero();
     add(q_ + d * x, v_, -1), add(q_ - d * x, v_, 1);
     stiffness += weight * x.dot(f_) / (2 * d);
+    system_.reduce_force(f_, r);
+    const VectorXd a = (r.array() / moving_mass_.array()) / (2 * d);
+    square_of_force += weight * r.dot(a) / (2 * d);
+    largest = a.lpNorm<Eigen::Infinity>();
     f_.setZero();
     add(q_, v_ + x, -1), add(q_, v_ - x, 1);
     damping += weight * x.dot(f_) / 2;
     mass += weight * 2 * system_.kinetic_energy(w);
   };
-  look_along(v_, state.w, 1);
-  look_along(a_, acceleration_, largest_ * largest_);
+  look_along(v_, state.w, 1, most[0]);
+  look_along(a_, acceleration_, largest_ * largest_, most[1]);
+  if (!(stiffness > 0)) return 0;
+  const double omega = std::sqrt(square_of_force / stiffness);
+  if (!(std::max(most[0], most[1] / omega) > matters * length_ * omega * omega * omega)) return 0;
   const double square = stiffness / mass - std::pow(0.5 * damping / mass, 2);
   return square > 0 ? std::sqrt(square) : 0.0;
 }

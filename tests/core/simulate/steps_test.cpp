@@ -212,6 +212,7 @@ TEST_CASE("adaptive steps follow the motion from the start on") {
 // 1 kg on 1e6 N/m, with nothing that turns: x = 1 + cos(1000 t) / 10 in steps of about alpha / omega, of
 // order 4 in alpha; its energy, were it 1e-12 of that of what falls beside, is worth no shorter steps, nor is
 // a damper's (c = 4 (k m)^1/2) that lets nothing swing.
+// What swings by less than a millionth of the structure, be it all that moves, is worth none, either.
 // Where something heavy that moves beside hides the swing from them, that is said.
 TEST_CASE("adaptive steps follow a swing on a spring") {
   const auto run = [](double amplitude, double damping, double turn, double beside = 1) {
@@ -253,6 +254,8 @@ end_time = 0.1
     before = off;
   }
   CHECK(run(1e-9, 0, 0.1).steps <= 20);
+  CHECK(run(1e-4, 0, 0.1, 1e-12).steps > 900);
+  for (const double amplitude : {0.0, 1e-16, 1e-7}) CHECK(run(amplitude, 0, 0.1, 1e-12).steps <= 20);
   const Simulation hidden = run(0.1, 0, 0.1, 1e12);
   CHECK(hidden.steps <= 20);
   REQUIRE(hidden.warnings.size() == 1);
