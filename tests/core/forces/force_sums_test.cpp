@@ -444,7 +444,7 @@ TEST_CASE("the order in which forces are told changes no motion and no work") {
   REQUIRE(told.status == RunStatus::completed);
   std::ranges::reverse(all);
   const Simulation reversed = run(all);
-  std::ranges::rotate(all, all.begin() + 5);
+  std::rotate(all.begin(), all.begin() + 5, all.end());
   const Simulation rotated = run(all);
   const Diagnostics d = diagnose(told);
   CHECK(testing::largest(d, "energy_balance_J") < 1e-6);  // step^6, with rates of some 100 1/s
