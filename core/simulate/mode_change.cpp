@@ -410,7 +410,7 @@ class Change {
       if (!stop(k) || !independent(D_, held, k) || solution_.w[k] > zero_acceleration(k)) continue;
       held[static_cast<std::size_t>(k)] = true;
       const VectorXd x = solution_.x - solution_.x[r] * past_held(D_, held, r);
-      bool push = x[k] - solution_.x[k] > rounding * std::abs(solution_.x[r]);
+      bool push = !independent(D_, held, r) && x[k] - solution_.x[k] > rounding * std::abs(solution_.x[r]);
       for (Index i = 0; i < count(); ++i) push = push && (!stop(i) || x[i] >= 0);
       if (push) return solution_.x = x, void(solution_.held = held);
     }

@@ -38,7 +38,7 @@ StepControl::StepControl(const Structure& structure, const System& system, const
 double StepControl::swing(const State& state) {
   constexpr double small = 1e-6;    // of a length, of a rate: rounding leaves 1e-10 of a stretch
   constexpr double matters = 1e-6;  // of a length, an amplitude
-  if (system_.constant_forces() || bends_) return 0;
+  if (system_.constant_forces() || bends_ || system_.rheonomic()) return 0;  // what is driven swings not
   const VectorXd still = VectorXd::Zero(system_.elastic_rods() ? std::ssize(system_.giving_rods()) : 0);
   const auto add = [&](const VectorXd& q, const VectorXd& v, double scale) {
     if (system_.elastic_rods())

@@ -121,4 +121,29 @@ TEST_CASE("friction that bears all it can leaves what grows to a stop that was t
   }
 }
 
+// Both stops are touched, friction bears exactly all that it can: it has no stop to leave its place to.
+TEST_CASE("stops between blocks bear nothing of what one of them rubs with on the ground") {
+  const double most = 2, push = 1.5, from = -0.5, to = 1.3;
+  const Simulation run = run_scene(
+      "[structure]\nkind = 'custom'\nrods = []\nnodes = [{name = 'A', position = [0, 0, 0], mass = 1.6}, "
+      "{name = 'B', "
+      "position = [1, 0, 0], mass = 0.7}]\n[[constraints]]\nkind = 'line'\nnodes = ['A', 'B']\ndirection = "
+      "[1, 0, "
+      "0]\n[[constraints]]\nkind = 'length_stop'\nname = 'low'\nnodes = ['A', 'B']\nmin = "
+      "1\n[[constraints]]\nkind "
+      "= 'length_stop'\nname = 'high'\nnodes = ['A', 'B']\nmax = 1\n[[forces]]\nkind = 'friction'\nnodes = "
+      "['A']\ndirection = [1, 0, 0]\nkinetic = " +
+      number(most) + "\n[[loads]]\nnodes = ['A']\nforce = [" + number(-push) +
+      ", 0, 0]\n[[forces]]\nkind = 'load_over_time'\nnodes = ['B']\nforce = [1, 0, 0]\ntimes = [0, "
+      "1]\nvalues = [" +
+      number(from) + ", " + number(to) + "]\n[solver]\nend_time = 1\n");
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(run.warnings == std::vector<std::string>{});
+  REQUIRE(run.events.size() ==
+          3);  // on the low one, and from it to the high one as the load changes its sign
+  CHECK(run.events[1].t == Approx(-from / (to - from)).epsilon(1e-8));
+  CHECK(std::abs(end_positions(run)[0]) < 1e-15);  // round-off of what holds
+  CHECK(std::abs(end_positions(run)[3] - 1) < 1e-15);
+}
+
 }  // namespace blocks_test
