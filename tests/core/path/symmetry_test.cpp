@@ -138,13 +138,13 @@ TEST_CASE("a ring about any axis has its turns and each entry its images") {
                [static_cast<std::size_t>(found.nodes[static_cast<std::size_t>(node)].source)];
     };
     int sources = 0;
-    const auto check = [&](const std::vector<TurnedImage>& images, const auto& nodes_of) {
+    const auto check = [&, sectors = n](const std::vector<TurnedImage>& images, const auto& nodes_of) {
       for (std::size_t i = 0; i < images.size(); ++i) {
         std::vector<int> turned = nodes_of(static_cast<std::size_t>(images[i].source));
         bool of_source = true;  // its own nodes may be images
         for (int& node : turned) {
           of_source = of_source && found.nodes[static_cast<std::size_t>(node)].turns == 0;
-          const int turns = (found.nodes[static_cast<std::size_t>(node)].turns + images[i].turns) % n;
+          const int turns = (found.nodes[static_cast<std::size_t>(node)].turns + images[i].turns) % sectors;
           node = image(node, turns);
         }
         CHECK(turned == nodes_of(i));

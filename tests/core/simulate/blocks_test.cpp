@@ -26,11 +26,11 @@ std::string blocks(const std::array<double, 2>& F, const std::array<double, 2>& 
   const double a[] = {(F[0] - kinetic[0]) / mass[0], (F[1] + kinetic[1]) / mass[1]};
   const double rate[] = {0.9 - a[0] * met, -0.9 * mass[0] / mass[1] - a[1] * met};
   std::string text = "[structure]\nkind = 'custom'\nrods = []\n", forces;
-  for (const int i : {0, 1}) {
+  for (const std::size_t i : {0U, 1U}) {
     const std::string name = i == 0 ? "'A'" : "'B'";
     text += "[[structure.nodes]]\nname = " + name + "\nposition = [" +
-            number(sense * (i - rate[i] * met - a[i] * met * met / 2)) + ", 0, 0]\nvelocity = [" +
-            number(sense * rate[i]) + ", 0, 0]\nmass = " + number(mass[i]) + "\n";
+            number(sense * (static_cast<double>(i) - rate[i] * met - a[i] * met * met / 2)) +
+            ", 0, 0]\nvelocity = [" + number(sense * rate[i]) + ", 0, 0]\nmass = " + number(mass[i]) + "\n";
     forces += "[[forces]]\nkind = 'friction'\nname = " + name + "\nnodes = [" + name +
               "]\ndirection = [1, 0, 0]\nkinetic = " + number(kinetic[i]) +
               "\nstatic = " + number(holding[i]) + "\n[[forces]]\nkind = 'load_over_time'\nnodes = [" + name +
