@@ -60,14 +60,23 @@ std::vector<double> energy_of_stopped_waves(const Simulation& run) {
   const Trajectory& trajectory = run.trajectory;
   std::vector<double> out;
   double most = 0;
+  VectorXd start = VectorXd::Zero(std::ssize(trajectory.structure().rods));  // self-stress is no wave
+  if (const Model& first = trajectory.model(0); !first.system.giving_rods().empty()) {
+    const State& state = trajectory.state(0);
+    VectorXd q(first.system.coordinates()), v = q, force(std::ssize(first.system.giving_rods()));
+    first.system.expand(state.z, q);
+    first.system.expand_rate(state.w, v);
+    first.system.giving_rod_forces(state.t, q, v, force);
+    start(first.system.giving_rods()) = force;
+  }
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const VectorXd& tension = trajectory.state(i).tension;
     const Model& model = trajectory.model(i);
     double stored = 0;
     for (Index k = 0; k < tension.size(); ++k) {
       const int rod = model.system.giving_rods()[static_cast<std::size_t>(k)];
-      stored +=
-          0.5 * model.structure.rods[static_cast<std::size_t>(rod)].compliance() * tension[k] * tension[k];
+      stored += 0.5 * model.structure.rods[static_cast<std::size_t>(rod)].compliance() *
+                std::pow(tension[k] - start[rod], 2);
     }
     most = stored > most && std::isfinite(stored) ? stored : most;
     out.push_back(4 * most * trajectory.structure().sectors);

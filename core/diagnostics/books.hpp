@@ -32,8 +32,8 @@ Diagnostics diagnose_window(const Simulation& window, bool goes_on, KnownUniquen
 std::vector<double> energy_round_off(const Simulation& run);
 
 // What waves of rods that give may have taken with them where a step stops them, at every state of the run
-// [J]: loaded at once, a rod that comes to rest has lost as much as it stores, C N^2 / 2; one that swings has
-// up to four times that.
+// [J]: loaded at once, a rod that comes to rest has lost as much as it stores, C N^2 / 2 with N beside its
+// force at the start; one that swings has up to four times that.
 std::vector<double> energy_of_stopped_waves(const Simulation& run);
 
 }  // namespace unfurl
