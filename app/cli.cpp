@@ -96,7 +96,7 @@ std::string words_of(const CLI::ParseError& error, const std::vector<std::string
 
 struct Parsed {
   Arguments arguments;
-  bool help = false;
+  bool help = false, version = false;
 };
 
 // Two ways to say the same key: one of them would be silently over the other.
@@ -210,6 +210,7 @@ Parsed parse(const Command& command, const std::vector<std::string>& words) {
   std::vector<std::string> short_keys;
   for (const OwnOption& own : own_options()) std::visit(Adder{parser, own, a, short_keys}, own.target);
   parser.add_flag("-h,--help", parsed.help);
+  parser.add_flag("--version", parsed.version);
   try {
     parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {
@@ -235,6 +236,11 @@ void check_count(const Command& command, const Arguments& arguments) {
   if (!message.empty()) throw UsageError(message + "; usage: " + usage_line(command));
 }
 
+int print_version() {
+  std::cout << "unfurl " << version() << "\n";
+  return exit_ok;
+}
+
 int dispatch(const std::vector<std::string>& words) {
   if (words.empty()) {
     std::cerr << program_help();
@@ -246,10 +252,7 @@ int dispatch(const std::vector<std::string>& words) {
     std::cout << (one ? command_help(find_command(words[1])) : program_help());
     return exit_ok;
   }
-  if (first == "--version") {
-    std::cout << "unfurl " << version() << "\n";
-    return exit_ok;
-  }
+  if (first == "--version") return print_version();
   if (first.starts_with("-")) throw UsageError("a command comes first, then its options; see unfurl --help");
   const Command& command = find_command(first);
   Parsed parsed = parse(command, {words.begin() + 1, words.end()});
@@ -257,6 +260,7 @@ int dispatch(const std::vector<std::string>& words) {
     std::cout << command_help(command);
     return exit_ok;
   }
+  if (parsed.version) return print_version();
   check_count(command, parsed.arguments);
   parsed.arguments.words = words;
   Arguments& a = parsed.arguments;

@@ -35,18 +35,18 @@ constexpr Command table[] = {
     {"study", "SCENE -o DIR", "speed against accuracy: every method over a ladder of steps", 1, 1, true,
      cmd_study,
      "-o --set --steps --repeats --methods --models --join --lease --style --font --dpi --force --threads "
-     "--quiet",
+     "--json --quiet",
      "unfurl study hoop6 -o study\n"
      "unfurl study hoop6 -o two --methods dvm,rk4 --steps 0.04:0.005 --repeats 1"},
     {"stress", "SCENE -o DIR", "stability at the extremes: every method and step", 1, 1, true, cmd_stress,
-     "-o --set --extreme --join --lease --style --font --dpi --force --threads --quiet",
+     "-o --set --extreme --join --lease --style --font --dpi --force --threads --json --quiet",
      "unfurl stress hoop6 --extreme mass_ratio -o stress"},
     {"sweep", "SCENE --vary KEY=FROM:TO:COUNT --measure NAME,... -o DIR",
      "measures of the scene over a grid of parameters", 1, 1, true, cmd_sweep,
      "-o --set --tolerance --vary --measure --shard --join --lease --merge --script --jobs --style --font "
      "--dpi "
      "--force --threads "
-     "--quiet",
+     "--json --quiet",
      "unfurl sweep hoop6_sector --vary structure.fold_angle=30:85:12 --measure deploy_time -o sweep"},
     {"solve", "SCENE --find KEY --target NAME=VALUE [-o DIR]",
      "the parameter for which a measure takes a value", 1, 1, false, cmd_solve,
@@ -54,7 +54,7 @@ constexpr Command table[] = {
      "unfurl solve hoop6 --find structure.hinge_force --target deploy_time=4"},
     {"reproduce", "-o DIR, or FILE [-o DIR]",
      "the paper's tables and figures, beside ours; or a file again from the receipt in it", 0, 1, false,
-     cmd_reproduce, "-o --validation --export --style --font --dpi --force --threads --quiet",
+     cmd_reproduce, "-o --validation --export --style --font --dpi --force --threads --json --quiet",
      "unfurl reproduce -o paper\n"
      "unfurl reproduce --validation -o validation\n"
      "unfurl reproduce energy.pdf"},
@@ -97,7 +97,7 @@ constexpr Command table[] = {
      "unfurl show hoop6\n"
      "unfurl show hoop6 --set structure.units=12 > twelve.toml"},
     {"verify", "PATH", "are results, a directory or a file, still as they were written? exit 7: no", 1, 1,
-     false, cmd_verify, "",
+     false, cmd_verify, "--json",
      "unfurl verify film\n"
      "unfurl verify film/figures/energy.pdf"},
     {"completion", "SHELL", "print a completion script for bash, zsh or fish, or the manual page: man", 1, 1,

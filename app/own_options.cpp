@@ -132,6 +132,8 @@ std::span<const OwnOption> own_options() {
 bool takes(const Command& command, std::string_view option) {
   // Upper bounds that every verb keeps.
   if (option == "--quiet" || option == "--threads") return true;
+  // A file that is named is written over without it.
+  if (option == "--force" && shows(command, "-o")) return true;
   return shows(command, option);
 }
 

@@ -29,7 +29,8 @@ int reproduce_validation(const Arguments& arguments) {
       markdown_text(table) + "\nWhat a scene cannot say yet:\n\n" + markdown_text(not_expressible_table());
   session.write("validation.csv", csv_text(table));
   session.write("validation.md", text);
-  if (!arguments.quiet) std::cout << text;
+  print_rows(arguments, true, table);
+  if (!arguments.quiet && !arguments.json) std::cout << text;
   bool all = true;
   for (const ValidationRow& row : rows) {
     all = all && row.holds();
@@ -42,6 +43,9 @@ int reproduce_validation(const Arguments& arguments) {
 }  // namespace
 
 int cmd_reproduce(const Arguments& arguments) {
+  if (!arguments.names.empty() && arguments.json)
+    throw UsageError(
+        "--json is for unfurl reproduce -o DIR; unfurl verify FILE --json says whether a file is as it was");
   if (!arguments.names.empty()) return reproduce_file(arguments);
   if (arguments.output.empty()) throw UsageError("-o is missing; usage: unfurl reproduce -o DIR, or FILE");
   if (!arguments.exports.empty())
@@ -66,6 +70,7 @@ int cmd_reproduce(const Arguments& arguments) {
   for (const Check& check : r.checks)
     if (!check.holds)
       std::cerr << "unfurl: does not hold: " << check.claim << "; found " << check.found << "\n";
+  print_rows(arguments, true, runs_table(r));
   const int code = finish(true, arguments, "");
   return r.verified() ? code : exit_verification_failed;
 }

@@ -75,6 +75,7 @@ int cmd_stress(const Arguments& arguments) {
   }
   session.write("stress.md", report_markdown(report));
   results_written(team.get());
+  print_rows(arguments, stress.complete, cells_table(stress));
   return finish(stress.complete, arguments, std::to_string(stress.cells.size()) + " cells");
 }
 

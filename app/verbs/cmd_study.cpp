@@ -92,6 +92,7 @@ int study_models(const Arguments& arguments) {
   for (const MeasuredModel& model : models)
     if (model.outcome == "failed")
       std::cerr << "unfurl: warning: " << model.choice.name << ": failed: " << model.message << "\n";
+  print_rows(arguments, true, models_table(models));
   const int code = finish(true, arguments, markdown_text(models_summary(models)));
   return models.front().outcome == "failed" ? exit_solver_failed : code;  // all others are compared with it
 }
@@ -139,6 +140,7 @@ int cmd_study(const Arguments& arguments) {
     pictures.push_back(session.write(figure));
   session.write("study.md", report_markdown(study_report(study, scene, pictures)));
   results_written(team.get());
+  print_rows(arguments, study.complete, points_table(study));
   return finish(study.complete, arguments, cheapest_sentence(study));
 }
 

@@ -262,6 +262,8 @@ int cmd_sweep(const Arguments& arguments) {
         "--force would remove the points that --merge puts together; leave it out, or use another -o");
   if (!arguments.study.script.empty() && !arguments.study.merge.empty())
     throw UsageError("--script prints a job that computes and then merges by itself; leave out --merge");
+  if (!arguments.study.script.empty() && arguments.json)
+    throw UsageError("--script prints a job, not a result; leave out --json");
   const SweepPlan plan = plan_of(arguments);
   if (!arguments.study.script.empty()) {
     std::cout << job_script(arguments);
@@ -288,6 +290,7 @@ int cmd_sweep(const Arguments& arguments) {
   }
   warn_of_unanswered(plan, sweep, scene.solver.model, arguments);
   session.write(journal_name(plan.shard), csv_text(sweep.table));
+  print_rows(arguments, sweep.missing.empty(), sweep.table);
   const std::size_t bad = unanswered(plan, sweep);
   const std::string count = std::to_string(sweep.table.rows.size()) + " points in " +
                             (session.directory() / journal_name(plan.shard)).string() +

@@ -2,7 +2,10 @@
 #include "app/verbs/study_session.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 #include <thread>
@@ -248,6 +251,33 @@ std::string StudySession::write(const Figure& figure) {
   }
   write_figure_data(figure, directory() / (stem + ".png"));
   return stem + ".png";
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Numbers as numbers, what is none of those that JSON knows as null.
+Json cell_json(const std::string& cell) {
+  if (cell.empty()) return nullptr;
+  if (!is_number(cell)) return cell;
+  const double number = number_of(cell);
+  if (cell.find_first_of(".ein") == std::string::npos && std::abs(number) < 1e15)
+    return static_cast<std::int64_t>(number);
+  return number;
+}
+
+}  // namespace
+
+void print_rows(const Arguments& arguments, bool complete, const Table& table) {
+  if (!arguments.json) return;
+  Json rows = Json::array();
+  for (const auto& row : table.rows) {
+    Json entry = Json::object();
+    for (std::size_t i = 0; i < row.size(); ++i) entry[table.columns[i]] = cell_json(row[i]);
+    rows.push_back(std::move(entry));
+  }
+  std::cout << Json{{"complete", complete}, {"rows", std::move(rows)}}.dump(2) << "\n";
 }
 
 int finish(bool complete, const Arguments& arguments, const std::string& sentence) {

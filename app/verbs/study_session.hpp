@@ -96,6 +96,10 @@ class StudySession {
   FigureWriter writer_;
 };
 
+// With --json: the rows of a result's main table on standard output, {"complete": ..., "rows": [{column:
+// cell}]}.
+void print_rows(const Arguments& arguments, bool complete, const Table& table);
+
 // The words of a report with its end: 0 or interrupted, with a line on stderr.
 int finish(bool complete, const Arguments& arguments, const std::string& sentence);
 
