@@ -267,15 +267,8 @@ Rise rise_on_the_way(const Simulation& run, const Diagnostics& d) {
   const RememberedExtremes once;
   const PeakInMotion most = extreme_of_column(run, d, "axial_force_max_N", true),
                      least = extreme_of_column(run, d, "axial_force_min_N", false);
-  // A force that is none has round-off, which grows as fast, to some 1e-4 of others where steps are looked
-  // into.
-  constexpr double round_off = 1e-4;
-  const double largest = larger(std::abs(most.value), std::abs(least.value));
-  const auto rises = [&](const PeakInMotion& end) {
-    return !end.bounded && std::abs(end.value) > round_off * largest;
-  };
-  if (!rises(most) && !rises(least)) return {};
-  const PeakForce peak = peak_rod_force(run, d, rises(most) ? Pull::tension : Pull::compression);
+  if (most.bounded && least.bounded) return {};
+  const PeakForce peak = peak_rod_force(run, d, most.bounded ? Pull::compression : Pull::tension);
   if (peak.rod < 0) return {};
   std::ostringstream text;
   text.precision(6);

@@ -68,4 +68,17 @@ bool only_round_off(const Simulation& run, const Diagnostics& d) {
   return true;
 }
 
+bool is_force(const Series& column) {
+  return column.unit == "N" || column.unit == "N m" || column.unit == "Pa" ||
+         column.name.ends_with("_ratio_max");
+}
+
+double round_off_within_steps(const Series& force, const Diagnostics& diagnostics) {
+  double largest = 0;
+  const auto take = [&](double x) { largest = std::isfinite(x) ? std::max(largest, std::abs(x)) : largest; };
+  std::ranges::for_each(force.values, take);
+  if (force.unit == "N") std::ranges::for_each(diagnostics.axial_force.reshaped(), take);
+  return 1e-4 * largest;
+}
+
 }  // namespace unfurl

@@ -20,4 +20,11 @@ MatrixXd without_round_off(const Simulation& run, const Diagnostics& diagnostics
 // Whether no rod has a force but of rounding.
 bool only_round_off(const Simulation& run, const Diagnostics& diagnostics);
 
+// Whether a column is a force, a stress, or a share of what a rod bears.
+bool is_force(const Series& column);
+
+// What a column of forces, torques or stresses may have of rounding alone between states, where steps are
+// looked into: 1e-4 of its own largest value and, of forces [N], of the largest axial force.
+double round_off_within_steps(const Series& force, const Diagnostics& diagnostics);
+
 }  // namespace unfurl

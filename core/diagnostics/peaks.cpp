@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/diagnostics/books.hpp"
+#include "core/diagnostics/force_round_off.hpp"
 #include "core/diagnostics/motion_samples.hpp"
 #include "core/diagnostics/peak_by_states.hpp"
 #include "core/diagnostics/peak_samples.hpp"
@@ -340,9 +341,9 @@ PeakInMotion rise_towards(const Neighbourhood& around, const StateValues& values
 }
 
 // Beside the singular poses that a run tells of, those whose states hold the largest values first, a force
-// may be larger the nearer it is looked for.
+// may be larger the nearer it is looked for; `least` may be round-off, which grows as fast.
 PeakInMotion without_bound(const Simulation& run, const std::vector<double>& at_states,
-                           const StateValues& values) {
+                           const StateValues& values, double least) {
   constexpr std::size_t most_poses = 3;
   std::vector<std::pair<double, double>> poses;  // value beside it, time
   for (const Event& event : run.events) {
@@ -361,16 +362,10 @@ PeakInMotion without_bound(const Simulation& run, const std::vector<double>& at_
                         run.trajectory.time(before + 1) - t < t - run.trajectory.time(before);
     const Neighbourhood around(run, before + (nearer ? 1 : 0), Neighbourhood::Of::all_steps);
     for (const double side : {-1.0, 1.0})
-      if (const PeakInMotion rise = rise_towards(around, values, t, side); !(rise.value <= found.value))
-        if (!std::isnan(rise.value)) found = rise;
+      if (const PeakInMotion rise = rise_towards(around, values, t, side); rise.value > least)
+        if (!(rise.value <= found.value)) found = rise;
   }
   return found;
-}
-
-// Whether a column is a force, a stress, or a share of what a rod bears.
-bool is_force(const Series& column) {
-  return column.unit == "N" || column.unit == "N m" || column.unit == "Pa" ||
-         column.name.ends_with("_ratio_max");
 }
 
 // Of a piece alone an angle begins anew within a turn: on from that of the run's state before.
@@ -403,7 +398,8 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
   if (sign < 0) std::ranges::copy(reaction_dips(d, name), std::back_inserter(also));
   PeakInMotion top = top_of_motion(run, at_states, of_the_state(*column) ? values : StateValues(), also);
   if (is_force(*column) && at_states.size() == run.trajectory.size())
-    if (const PeakInMotion rise = without_bound(run, at_states, values); !std::isnan(rise.value)) {
+    if (const PeakInMotion rise = without_bound(run, at_states, values, round_off_within_steps(*column, d));
+        !std::isnan(rise.value)) {
       if (!(rise.value <= top.value)) top = rise;
       top.bounded = false;
     }

@@ -204,4 +204,31 @@ step = )toml" + std::to_string(step) +
   }
 }
 
+// A parallel crank of three rods of 1 kg and 1 m swings up to th = asin(4 / 2.4 g) and falls through its flat
+// pose, in which all of them are in line: th'^2 = 4 - 2.4 g sin(th), a crank bears 5/6 th'^2 - g sin(th), so
+// 10/3 - 3 g sin(th): least at the top, -5/3 N, and the coupler nothing but round-off, which grows towards
+// the flat pose.
+TEST_CASE("the least force of a motion is unique where only round-off grows without bound") {
+  const Simulation run = with_poses(testing::run_scene(R"toml([structure]
+kind = "custom"
+nodes = [{name = "A0", position = [0, 0, 0], fixed = true}, {name = "A1", position = [1, 0, 0], fixed = true},
+         {name = "B0", position = [1, 0, 0], velocity = [0, 2, 0]},
+         {name = "B1", position = [2, 0, 0], velocity = [0, 2, 0]}]
+rods = [{nodes = ["A0", "B0"], mass = 1}, {nodes = ["A1", "B1"], mass = 1}, {nodes = ["B0", "B1"], mass = 1}]
+constraints = [{kind = "plane", nodes = ["B*"], normal = [0, 0, 1]}]
+[gravity]
+acceleration = [0, -9.81, 0]
+[solver]
+step = 0.005
+stages = 6
+end_time = 1
+)toml"));
+  const Diagnostics d = diagnose(run);
+  CHECK_FALSE(warns(run, d));
+  const PeakForce least = peak_rod_force(run, d, Pull::compression);
+  CHECK(std::abs(least.force_N) == Approx(5.0 / 3).epsilon(1e-7));  // of its time within a step, squared
+  CHECK(least.unique);
+  CHECK(least.t == Approx(0.171224).margin(1e-4));  // half of the time until it is flat again, 0.342449 s
+}
+
 }  // namespace unbounded_peak_test
