@@ -47,9 +47,11 @@ Step index_step(std::string_view key, std::size_t& i) {
   std::size_t index = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), index);
   if (error == std::errc() && stop == text.data() + text.size()) return {"", false, index};
-  if (text.size() >= 2 && (text[0] == '"' || text[0] == '\'') && text.back() == text[0])
-    text = text.substr(1, text.size() - 2);
-  if (text.empty() || text[0] == '-' || text[0] == '+')
+  const bool quoted = text.size() >= 2 && (text[0] == '"' || text[0] == '\'') && text.back() == text[0];
+  if (quoted) text = text.substr(1, text.size() - 2);
+  const bool number = !quoted && (text.starts_with('-') || text.starts_with('+')) &&
+                      text.find_first_not_of("0123456789", 1) == text.npos;
+  if (text.empty() || number)
     throw Refusal{"an index must be a whole number in brackets, [0] the first, or a name"};
   return {std::string(text), true, std::nullopt};
 }

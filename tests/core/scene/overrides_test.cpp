@@ -117,6 +117,22 @@ TEST_CASE("entries of lists that a scene does not have yet, and names with brack
         "--set forces[pull].damping: forces has no entry named 'pull'; the first is [0]\n");
 }
 
+TEST_CASE("a name may begin with a sign as long as it is no number") {
+  for (const char* name : {"-Y panel", "+X.2", "--", "-1"}) {
+    INFO(name);
+    const Result r =
+        with({"forces[0].name='" + std::string(name) + "'", "forces['" + std::string(name) + "'].damping=3"});
+    CHECK(r.problems == "");
+    CHECK(r.tree.find("forces")->items[0].find("damping")->integer == 3);
+  }
+  CHECK(with({"forces[0].name=-Y panel", "forces[-Y panel].damping=3"}).problems != "");  // a value in quotes
+  CHECK(with({"forces[0].name='-Y panel'", "forces[-Y panel].damping=3"}).problems == "");
+  for (const char* index : {"-1", "+1", "", "''", "-"})
+    CHECK(with({"structure.nodes[" + std::string(index) + "].mass=1"}).problems ==
+          "--set structure.nodes[" + std::string(index) +
+              "].mass: an index must be a whole number in brackets, [0] the first, or a name\n");
+}
+
 TEST_CASE("one component of a vector that the scene leaves out") {
   const Result r = with({"gravity.acceleration[2]=-1.5", "structure.nodes[1].velocity[0]=2"});
   CHECK(r.problems == "");
