@@ -227,7 +227,7 @@ class DipSearch {
         continue;
       }
       way = 0;
-      const bool near = !times.empty() && k > 0 && times.back() == times_[k - 1];
+      const bool near = !times.empty() && times.back() == times_[k - 1];
       values_.push_back(near || !skip ? sigma_.estimate(z) : sigma_.at(z));
       times.push_back(times_[k]);
       if (!std::isfinite(values_.back())) return false;

@@ -17,8 +17,7 @@ void add_bends_of_line(const TimeFunction& f, std::vector<TimeEdge>& edges) {
     }
     const double before = i > 0 ? slope(i - 1) : 0.0, after = i + 1 < x.size() ? slope(i) : 0.0;
     // Points of one straight line, up to their rounding, do not bend it.
-    if (std::abs(after - before) > 1e-9 * std::max(std::abs(before), std::abs(after)))
-      edges.push_back({x[i], false});
+    if (std::abs(after - before) > 1e-9 * std::abs(after)) edges.push_back({x[i], false});
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A load along the tangent of a rod that bends: Beck's column, which does not buckle and flutters at
 // 20.0509536 E I / L^2 (M. Beck, Z. angew. Math. Phys. 3 (1952) 225; the digits of Bolotin and others since).
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -10,6 +11,7 @@
 #include "core/scene/reader.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "tests/support/number.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -64,6 +66,23 @@ TEST_CASE("a follower is tangent to a rod that bends and makes it flutter at the
   // It grows by flutter, never without a swing: pi^2 E I / L^2 is where a load towards A would buckle it.
   constexpr double unit = modulus * second_moment / (length * length);
   for (const VibrationMode& mode : column(24, 15 * unit).modes) CHECK(mode.growth <= 1e-3 * mode.frequency);
+}
+
+TEST_CASE("the tangent at a bending rod's end is that of its last two parts") {
+  const auto model = testing::model_of(
+      "[structure]\nkind = 'custom'\nyoungs_modulus = 7e10\nnodes = [{name = 'A', position = [0, 0, 0], "
+      "fixed = true}, "
+      "{name = 'B', position = [2, 0, 0]}]\nrods = [{nodes = ['A', 'B'], density = 2700, area = 1e-4, "
+      "second_moment = "
+      "1e-9, segments = 5}]\n[[forces]]\nkind = 'follower'\nrod = 'A-B'\nforce = 3\n");
+  for (const Force& force : model->structure.forces) {
+    if (force.kind != "follower") continue;
+    REQUIRE(force.nodes.size() == 3);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double x = std::array{1.6, 2.0, 1.2}[k];  // ends of the last part, and of that before it
+      CHECK(model->structure.nodes[static_cast<std::size_t>(force.nodes[k])].position.x() == Approx(x));
+    }
+  }
 }
 
 }  // namespace follower_on_bending_rod_test

@@ -79,6 +79,13 @@ TEST_CASE("a doubled brace is a brace") {
   CHECK(written("{{units}}", {"structure.units=5"}).title == "mine: units = 5");  // it names no parameter
 }
 
+// Doubled only where a single brace would mean something else.
+TEST_CASE("a title with single braces is written as it stands where it says no more than that") {
+  CHECK(title_that_says("none { or } of them") == "none { or } of them");
+  CHECK(title_that_says("{units}") == "{{units}}");
+  CHECK(title_that_says("{{ and }") == "{{{{ and }}");
+}
+
 // A scene without a title is called by its file's name, which is no pattern whatever is in it.
 TEST_CASE("a file's name in braces survives writing and reading, and is no place of the title") {
   const std::string hoop = "[structure]\nkind = 'hoop'\n";

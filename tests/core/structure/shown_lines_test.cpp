@@ -117,4 +117,27 @@ TEST_CASE("lines are thinner than the thinnest rod") {
   CHECK(radius(0.07, 0.3, 100) == Approx(0.4 * 0.07));
 }
 
+// A cable that takes its pull up over a length, as those of nets do, is drawn as a net's.
+TEST_CASE("cables and the cords of nets are lines of a group each") {
+  const auto model = testing::model_of(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], mass = 1},
+  {name = "C", position = [2, 0, 0], mass = 1}]
+[[forces]]
+kind = "cable"
+nodes = ["A", "B"]
+axial_stiffness = 10
+[[forces]]
+kind = "cable"
+nodes = ["B", "C"]
+axial_stiffness = 10
+smoothing = 0.01
+)");
+  std::string lines;
+  for (const ShownLine& line : model->structure.lines)
+    lines += line.group + " " + std::to_string(line.a) + std::to_string(line.b) + " ";
+  CHECK(lines == "cable 01 net 12 ");
+}
+
 }  // namespace shown_lines_test
