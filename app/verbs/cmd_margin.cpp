@@ -251,7 +251,12 @@ Margin margin_as_far_as_followed(const std::shared_ptr<const Model>& model, cons
         return margin_of(Sector(model).model(), scene.solver, factors);
     } catch (const PathRefused&) {  // no sector: of the whole, then
     }
-    throw PathRefused(scene.name + ": no margin: " + refused.what());
+    const bool own_sector = !by_sector && scene.kind == "hoop" && model->structure.sectors == 1;
+    throw PathRefused(scene.name + ": no margin: " + refused.what() +
+                      (own_sector
+                           ? "; that of one sector, whose hinges stand for those of all, may go further: "
+                             "--set structure.model=sector"
+                           : ""));
   }
 }
 

@@ -72,9 +72,9 @@ SolveOptions options_of(const Arguments& arguments, const SceneSource& source, c
   return options;
 }
 
-// solved_force: of a force, whether it is unique at the solution.
+// solved_force: of a force, whether it is unique at the solution. note: how far its run got.
 std::string result_json(const StudyArguments& study, const Target& target, const Solved& solved,
-                        const std::optional<bool>& solved_force) {
+                        const std::optional<bool>& solved_force, const std::string& note) {
   nlohmann::ordered_json json = {{"key", study.find},
                                  {"value", solved.x},
                                  {"measure", target.measure.name},
@@ -83,6 +83,8 @@ std::string result_json(const StudyArguments& study, const Target& target, const
                                  {"bracket", {solved.low, solved.high}},
                                  {"runs", solved.evaluations.size()}};
   if (solved_force) json["unique"] = *solved_force;
+  json["notes"] = nlohmann::ordered_json::array();
+  if (!note.empty()) json["notes"].push_back(note);
   return json.dump(2) + "\n";
 }
 
@@ -131,8 +133,10 @@ int cmd_solve(const Arguments& arguments) {
       std::cerr << "unfurl: warning: " << text << "\n";
     if (!output.path().empty()) write_results(output.path(), study.find, source, target, solved);
     const std::optional<bool> solved_force = objective.unique(solved.x);
+    const std::string note = objective.note(solved.x);
+    if (!note.empty()) std::cerr << "unfurl: warning: its motion ends early: " << note << "\n";
     if (arguments.json)
-      std::cout << result_json(study, target, solved, solved_force);
+      std::cout << result_json(study, target, solved, solved_force, note);
     else
       std::cout << study.find << " = " << exact_number(solved.x) << "\n";
     return finish(

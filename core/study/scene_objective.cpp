@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/ending.hpp"
 #include "core/path/path.hpp"
 #include "core/scene/build.hpp"
 #include "core/simulate/singular_poses.hpp"
@@ -34,6 +35,7 @@ double SceneObjective::at(double x) {
     }
     Told& told = told_[x];
     told.warnings = warnings_of(run, diagnostics);
+    told.note = ending_note(run, diagnostics);
     if (const std::string flag = uniqueness_of(measure_.name); !flag.empty())
       told.unique = find_measure(flag).value(run, diagnostics) != 0.0;
     return measure_.value(run, diagnostics);
@@ -58,6 +60,11 @@ std::vector<std::string> SceneObjective::warnings(double x) const {
 std::optional<bool> SceneObjective::unique(double x) const {
   const auto at = told_.find(x);
   return at == told_.end() ? std::nullopt : at->second.unique;
+}
+
+std::string SceneObjective::note(double x) const {
+  const auto at = told_.find(x);
+  return at == told_.end() ? std::string() : at->second.note;
 }
 
 }  // namespace unfurl

@@ -24,11 +24,13 @@ class SceneObjective {
   // Of the run at an x that was asked for: what it is warned of, and that its force is not unique.
   std::vector<std::string> warnings(double x) const;
   std::optional<bool> unique(double x) const;  // none: not a force, or no run
+  std::string note(double x) const;            // how far it got where it ended before it was deployed
 
  private:
   struct Told {
     std::vector<std::string> warnings;
     std::optional<bool> unique;
+    std::string note;
   };
   SceneSource source_;
   std::string key_;

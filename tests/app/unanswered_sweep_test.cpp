@@ -239,4 +239,30 @@ TEST_CASE("a failed run is no modelling choice to compare with") {
   CHECK(report.substr(row, report.find('\n', row) - row).ends_with("|  |  |  |  |  |"));
 }
 
+// With a hinge force F the ring deploys at 4.92 s sqrt(200 N / F), so after the scene's 6 s below 134 N.
+TEST_CASE("solve tells where the run of its answer ended before the structure was deployed") {
+  const auto solve = [](const std::string& end, const std::string& option) {
+    return run_program({"solve", "hoop6_sector", "--find", "structure.hinge_force", "--target",
+                        "peak_rod_force=1000", "--set", "solver.end_time=" + end, option});
+  };
+  const ProgramResult early = solve("6", "--json");
+  CHECK(early.err.find(
+            "unfurl: warning: its motion ends early: 99.4 % deployed when end_time = 6 s was reached") == 0);
+  CHECK(early.out.find("\"notes\": [\n    \"99.4 % deployed") != std::string::npos);
+  const ProgramResult whole = solve("20", "--json");
+  CHECK(whole.err.find("ends early") == std::string::npos);
+  CHECK(whole.out.find("\"notes\": []") != std::string::npos);
+}
+
+TEST_CASE("margin --stuck of a ring too fine for its whole path names that of a sector") {
+  const std::vector<std::string> words{
+      "margin", "hoop6", "--stuck", "--set", "structure.fold_angle=80", "--set", "structure.units=28"};
+  const ProgramResult whole = run_program(words);
+  CHECK(whole.code == 3);
+  CHECK(whole.err.find("may go further: --set structure.model=sector\n") != std::string::npos);
+  std::vector<std::string> by_sector = words;
+  by_sector.insert(by_sector.end(), {"--set", "structure.model=sector"});
+  CHECK(run_program(by_sector).code == 0);
+}
+
 }  // namespace unanswered_sweep_test
