@@ -83,7 +83,7 @@ void write_run_report(const fs::path& directory, const Scene& scene, const Simul
   if (!error && film <= largest_film) report.picture("animation.webp", "The motion.");
   report.heading("How it ended");
   report.add(outcome_of(run, diagnostics));
-  if (const std::string note = ending_note(run, diagnostics); !note.empty()) report.paragraph(as_plain(note));
+  for (const std::string& note : notes_of(run, diagnostics)) report.paragraph(as_plain(note));
   const auto warnings = lasting_warnings(run, diagnostics, warnings_about_text(scene));
   report.heading("Warnings");
   if (warnings.empty()) report.paragraph("None.");

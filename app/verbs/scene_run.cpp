@@ -212,7 +212,7 @@ void report_run(const Simulation& run, const Diagnostics& diagnostics, const Arg
     text << ", constraint error " << largest_magnitude(diagnostics.at("constraint_max_m").values)
          << " m, energy balance " << largest_magnitude(diagnostics.at("energy_balance_J").values) << " J";
   text << "\n";
-  if (const std::string note = ending_note(run, diagnostics); !note.empty()) text << note << "\n";
+  for (const std::string& note : notes_of(run, diagnostics)) text << note << "\n";
   std::cerr << text.str();
 }
 

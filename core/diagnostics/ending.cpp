@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/diagnostics/ending.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+
+#include "core/simulate/singular_poses.hpp"
 
 namespace unfurl {
 
@@ -19,6 +22,23 @@ std::string ending_note(const Simulation& run, const Diagnostics& diagnostics) {
   std::ostringstream text;
   text << percent << " % deployed when end_time = " << run.options.end_time << " s was reached";
   return text.str();
+}
+
+std::vector<std::string> notes_of(const Simulation& run, const Diagnostics& diagnostics) {
+  std::vector<std::string> notes;
+  if (std::string ending = ending_note(run, diagnostics); !ending.empty()) notes.push_back(std::move(ending));
+  Index size = 0;
+  for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
+    const System& system = run.trajectory.model(i).system;
+    if (system.constraints() > 0 && system.solved_coordinates() > 0)
+      size = std::max({size, system.constraints(), system.solved_coordinates()});
+  }
+  if (size > max_singular_size)
+    notes.push_back("singular poses were not looked for, which is done up to " +
+                    std::to_string(max_singular_size) + " constraints or coordinates; the model has " +
+                    std::to_string(size) +
+                    ": a force that grows without bound beside one is told as it is at the states");
+  return notes;
 }
 
 }  // namespace unfurl

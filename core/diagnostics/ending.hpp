@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far a run got that ended before the structure was deployed.
+// What a run says of itself besides warnings.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/diagnostics/diagnostics.hpp"
 
@@ -11,5 +12,8 @@ namespace unfurl {
 // "32.4 % deployed when end_time = 1 s was reached"; empty where the structure does not deploy, has done so,
 // or the run ended in another way.
 std::string ending_note(const Simulation& run, const Diagnostics& diagnostics);
+
+// That, and that singular poses were not looked for where the structure is too large for it.
+std::vector<std::string> notes_of(const Simulation& run, const Diagnostics& diagnostics);
 
 }  // namespace unfurl

@@ -151,8 +151,7 @@ std::string summary_json(const std::string& scene_name, const Simulation& run, c
   if (record.wall_s > 0) summary["wall_s"] = record.wall_s;
   summary["message"] = run.message;
   summary["warnings"] = warnings_of(run, diagnostics);
-  summary["notes"] = Json::array();
-  if (const std::string note = ending_note(run, diagnostics); !note.empty()) summary["notes"].push_back(note);
+  summary["notes"] = notes_of(run, diagnostics);
   summary["model"] = model_json(model.structure, model.system, mobility);
   const SolvedAs solved = solved_as(run);
   summary["model"]["solved_as"] = solved.name;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/diagnostics/ending.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <utility>
@@ -45,6 +46,22 @@ TEST_CASE("a run that ends before the deployed pose says how far it got, rounded
   CHECK(ending_note(stopped, diagnose(stopped)).empty());
   const Simulation pendulum = run_scene("[structure]\nkind = 'pendulum'\n", {"solver.end_time=0.1"});
   CHECK(ending_note(pendulum, diagnose(pendulum)).empty());
+}
+
+TEST_CASE("a run too large to look for singular poses says so") {
+  for (const int windows : {149, 150}) {
+    const Simulation run =
+        run_scene("[structure]\nkind = 'four_bar_ladder'\nwindows = " + std::to_string(windows) + "\nspeed = 1\n",
+                  {"solver.end_time=0.03"});
+    const System& system = run.trajectory.last_model().system;
+    const Index size = std::max(system.constraints(), system.solved_coordinates());
+    CAPTURE(windows, size);
+    CHECK((size > 300) == (windows == 150));
+    const std::vector<std::string> notes = notes_of(run, diagnose(run));
+    REQUIRE(notes.size() == (size > 300 ? 1 : 0));
+    if (!notes.empty())
+      CHECK(notes[0].find("the model has " + std::to_string(size) + ":") != std::string::npos);
+  }
 }
 
 }  // namespace ending_test
