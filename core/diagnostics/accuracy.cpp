@@ -268,7 +268,18 @@ Rise rise_on_the_way(const Simulation& run, const Diagnostics& d) {
   const PeakInMotion most = extreme_of_column(run, d, "axial_force_max_N", true),
                      least = extreme_of_column(run, d, "axial_force_min_N", false);
   if (most.bounded && least.bounded) return {};
-  const PeakForce peak = peak_rod_force(run, d, most.bounded ? Pull::compression : Pull::tension);
+  PeakForce peak = peak_rod_force(run, d, most.bounded ? Pull::compression : Pull::tension);
+  // The largest force may be another one, far from the pose.
+  const auto at = static_cast<double>(run.trajectory.state_before(peak.t));
+  if (std::ranges::none_of(run.events, [&](const Event& e) {
+        return e.kind == "singular_pose" &&
+               std::abs(static_cast<double>(run.trajectory.state_before(e.t)) - at) <= 1;
+      })) {
+    peak.rod = -1, peak.force_N = 0, peak.t = (most.bounded ? least : most).rise_t;
+    const VectorXd forces = (most.bounded ? -1 : 1) * rod_forces_within_step(run, peak.t);
+    for (Index r = 0; r < forces.size(); ++r)
+      if (d.shows(r) && forces[r] > peak.force_N) peak.rod = r, peak.force_N = forces[r];
+  }
   if (peak.rod < 0) return {};
   std::ostringstream text;
   text.precision(6);

@@ -334,7 +334,7 @@ PeakInMotion rise_towards(const Neighbourhood& around, const StateValues& values
     const std::vector<double> x = around.sample({times.begin(), times.end()}, values);
     if (std::isnan(x[0])) continue;
     const double near = x[0] - x[1], far = x[1] - x[2];
-    if (far > 0 && near >= doubled * far && near >= seen * x[0]) return {x[0], times[0], false};
+    if (far > 0 && near >= doubled * far && near >= seen * x[0]) return {x[0], times[0], false, times[0]};
     break;
   }
   return {};
@@ -401,7 +401,7 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
     if (const PeakInMotion rise = without_bound(run, at_states, values, round_off_within_steps(*column, d));
         !std::isnan(rise.value)) {
       if (!(rise.value <= top.value)) top = rise;
-      top.bounded = false;
+      top.bounded = false, top.rise_t = rise.t;
     }
   top.value *= sign;
   return top;

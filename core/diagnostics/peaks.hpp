@@ -21,9 +21,11 @@ using StateValues = std::function<std::vector<double>(const Simulation&)>;
 struct PeakInMotion {
   double value = std::numeric_limits<double>::quiet_NaN();  // NaN: there is none
   double t = std::numeric_limits<double>::quiet_NaN();      // [s], of a state or within a step
-  // False: it goes on to rise towards a time beside it as 1 / (time left), as forces do where a singular pose
-  // is passed; the value is that of the nearest pose that was looked at.
+  // False: it rises towards a time beside rise_t as 1 / (time left), as forces do where a singular pose is
+  // passed; where that is the largest yet, the value is that of the nearest pose that was looked at, at
+  // rise_t.
   bool bounded = true;
+  double rise_t = std::numeric_limits<double>::quiet_NaN();  // [s]
 };
 
 // The largest value over the motion. `at_states`: the values at the run's own states, NaN where there is

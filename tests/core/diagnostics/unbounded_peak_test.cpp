@@ -231,4 +231,27 @@ end_time = 1
   CHECK(least.t == Approx(0.171224).margin(1e-4));  // half of the time until it is flat again, 0.342449 s
 }
 
+// A parallelogram of uniform rods, of which one leg is a ten-thousandth heavier, falls from 63 degrees
+// through its flat pose: the legs differ there by c / |t - t*|, which no state shows beside what they bear at
+// the start.
+TEST_CASE("a force without bound is told where it grows, not where another is largest") {
+  const Simulation run = with_poses(testing::run_scene(R"toml([structure]
+kind = "custom"
+nodes = [{name = "A0", position = [0, 0, 0], fixed = true}, {name = "B0", position = ["=cos(63*deg)", 0, "=sin(63*deg)"]},
+         {name = "A1", position = [0.7, 0, 0], fixed = true}, {name = "B1", position = ["=0.7+cos(63*deg)", 0, "=sin(63*deg)"]}]
+rods = [{nodes = ["A0", "B0"], mass = 1}, {nodes = ["A1", "B1"], mass = 1.0001}, {nodes = ["B0", "B1"], mass = 1}]
+constraints = [{kind = "plane", nodes = ["B*"], normal = [0, 1, 0]}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+end_time = 1
+stages = 4
+)toml"));
+  const auto pose = std::ranges::find(run.events, "singular_pose", &Event::kind);
+  REQUIRE(pose != run.events.end());
+  const Rise rise = rise_on_the_way(run, diagnose(run));
+  CHECK(rise.text.find("the force of rod ") == 0);
+  CHECK(rise.t == Approx(pose->t).margin(run.options.step));
+}
+
 }  // namespace unbounded_peak_test
