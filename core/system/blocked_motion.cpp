@@ -5,9 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <utility>
 #include <vector>
 
+#include "core/math/coupled_columns.hpp"
 #include "core/math/factors.hpp"
 #include "core/math/singular_values.hpp"
 #include "core/system/consistency.hpp"
@@ -20,6 +23,9 @@ constexpr Index most_coordinates = 300;  // dense algebra within a fraction of a
 // Singular values of unit rows. Round-off leaves 1e-15 of a dependent row; a structure that is so near to a
 // singular pose on purpose (the folded ring of a thousand units: 1e-7) has no digits left to say so.
 constexpr double round_off = 1e-14, meant = 1e-7;
+// What is rigid by its make is farther from a pose in which it moves; rows count as independent above the
+// other.
+constexpr double nearly_free = 1e-3;
 // Misfits below this let a run of usual length be right to eight digits.
 constexpr double worth_a_word = 3e-13;
 
@@ -73,27 +79,89 @@ bool has_pose(const System& system, double t, const VectorXd& q, Index left_out,
          leads_to_pose(system, t, q - beside, left_out, by);
 }
 
-}  // namespace
+// What hangs together by its rows, and how few digits show there.
+struct Doubt {
+  double misfit = 0;  // the largest singular value that is neither round-off nor meant
+  double nearly = 0;  // of what stands still by its own rows: how far it is from a pose in which it moves
+  std::vector<int> held{};  // those rows
+};
 
-double misfit_of_rows(const System& system, const ConstVec& q) {
-  if (system.coordinates() > most_coordinates || system.all_constraints() < system.coordinates()) return 0;
+// Rows in sets that share no coordinate.
+std::vector<std::vector<int>> sets_of_rows(const SparseRows& G, const std::vector<int>& rows) {
+  CoupledColumns columns(G.cols());
+  columns.join_rows_of(picked_rows(G, rows));
+  std::map<Index, std::vector<int>> sets;
+  for (const int r : rows)
+    if (SparseRows::InnerIterator it(G, r); it) sets[columns.set_of(it.col())].push_back(r);
+  std::vector<std::vector<int>> out;
+  for (auto& [first, set] : sets) out.push_back(std::move(set));
+  return out;
+}
+
+// Some rows with the columns that they have entries in.
+MatrixXd dense_rows(const SparseRows& G, const std::vector<int>& rows) {
+  std::map<Index, Index> place;
+  for (const int r : rows)
+    for (SparseRows::InnerIterator it(G, r); it; ++it) place.emplace(it.col(), 0);
+  if (std::ssize(place) > most_coordinates) return {};
+  Index count = 0;
+  for (auto& [column, at] : place) at = count++;
+  MatrixXd out = MatrixXd::Zero(std::ssize(rows), count);
+  for (Index k = 0; k < out.rows(); ++k)
+    for (SparseRows::InnerIterator it(G, rows[static_cast<std::size_t>(k)]); it; ++it)
+      out(k, place.at(it.col())) = it.value();
+  return out;
+}
+
+Doubt doubt_of_rows(const System& system, const ConstVec& q) {
+  Doubt doubt;
   // A drive moves what the others leave free, so that with its row they look independent.
   std::vector<int> rows = counted_rows(system, q);
   const std::vector<int> sources = system.all_sources();
   for (const Drive& drive : system.drives())
     std::erase_if(rows, [&](int r) { return sources[static_cast<std::size_t>(r)] == drive.constraint; });
   for (const int implied : system.rows_of_digits()) std::erase(rows, implied);
-  const MatrixXd G(picked_rows(unit_rows(system, q), rows));
-  if (same_rank(G, round_off, meant)) return 0;  // as nearly always, and cheaper
-  const VectorXd values = singular_values(G);
-  double most = 0;
-  for (const double value : values)
-    if (value > round_off && value < meant) most = std::max(most, value);
-  return most;
+  const SparseRows G = unit_rows(system, q);
+  for (const std::vector<int>& set : sets_of_rows(G, rows)) {
+    const MatrixXd D = dense_rows(G, set);
+    if (D.size() == 0 || same_rank(D, round_off, nearly_free)) continue;  // as nearly always, and cheaper
+    const VectorXd values = singular_values(D);
+    for (const double value : values)
+      if (value > round_off && value < meant) doubt.misfit = std::max(doubt.misfit, value);
+    const Index rank = (values.array() > dependent_row).count();
+    if (rank == 0 || !(values[rank - 1] < nearly_free) ||
+        rank + rigid_motions(picked_rows(G, set), q, system.ghosts()) != D.cols())
+      continue;
+    doubt.nearly = values[rank - 1];
+    doubt.held = set;
+  }
+  return doubt;
+}
+
+}  // namespace
+
+double misfit_of_rows(const System& system, const ConstVec& q) {
+  return doubt_of_rows(system, q).misfit;
 }
 
 std::string misfit_warning(const System& system, const ConstVec& q) {
-  const double misfit = misfit_of_rows(system, q);
+  const Doubt doubt = doubt_of_rows(system, q);
+  const double misfit = doubt.misfit;
+  if (!doubt.held.empty()) {
+    const std::vector<std::string> all = system.all_names();
+    std::vector<std::string> names;
+    for (const bool rods : {true, false})
+      for (const int row : doubt.held)
+        if (const std::string& name = all[static_cast<std::size_t>(row)]; name.starts_with("rod ") == rods)
+          names.push_back(name);
+    return listed(names, 4) +
+           " hold each other and stand still, though they nearly leave one motion (all but " +
+           rounded(doubt.nearly, 2) + " of their size): if it is meant, " +
+           (doubt.nearly < rounding_of_rows(system, q)
+                ? "move the structure near the origin, from which it stands too far for the digits that a "
+                  "number has"
+                : "give its positions all 16 digits (an expression, \"=...\", has them)");
+  }
   if (misfit < worth_a_word) return "";
   const std::string found = "constraints of this structure follow from one another only to " +
                             rounded(misfit, 2) + " of their size";

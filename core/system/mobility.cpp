@@ -80,40 +80,6 @@ std::vector<int> dependent_rows(const MatrixXd& G, double negligible) {
   return dependent;
 }
 
-// How many of the six rigid-body motions violate no constraint, of a structure that is not on one line: six
-// less the rank of G R, R = [translations, rotations]. Numbers of drives are nowhere in space and follow as
-// they must: with their coordinates E beside R, what [R, E] has and E alone does not.
-Index rigid_motions(const SparseRows& G, const ConstVec& q, const std::vector<int>& ghosts) {
-  const Index n = q.size() / 3, numbers = 3 * std::ssize(ghosts);
-  MatrixXd R = MatrixXd::Zero(q.size(), 6), E = MatrixXd::Zero(q.size(), numbers);
-  std::vector<char> in_space(static_cast<std::size_t>(n), 1);
-  for (std::size_t g = 0; g < ghosts.size(); ++g) {
-    in_space[static_cast<std::size_t>(ghosts[g])] = 0;
-    E.block<3, 3>(3 * ghosts[g], static_cast<Index>(3 * g)).setIdentity();
-  }
-  double size = std::numeric_limits<double>::min();
-  for (Index i = 0; i < n; ++i)
-    if (in_space[static_cast<std::size_t>(i)])
-      size = std::max(size, q.segment<3>(3 * i).lpNorm<Eigen::Infinity>());
-  for (Index i = 0; i < n; ++i) {
-    if (!in_space[static_cast<std::size_t>(i)]) continue;
-    const Vec3 x = q.segment<3>(3 * i) / size;
-    for (int k = 0; k < 3; ++k) {
-      R.block<3, 1>(3 * i, k) = Vec3::Unit(k);
-      R.block<3, 1>(3 * i, 3 + k) = Vec3::Unit(k).cross(x);
-    }
-  }
-  // Rows of G have the length 1 and entries of R are below 1: round-off is 1e-15, a motion that a row forbids
-  // 1e-3 and more.
-  const auto rank = [](const MatrixXd& A) {
-    return A.size() > 0 ? (singular_values(A).array() > 1e-9).count() : Index{0};
-  };
-  if (G.rows() == 0) return rank(R);
-  MatrixXd all(q.size(), 6 + numbers);
-  all << R, E;
-  return rank(R) - (rank(G * all) - rank(G * E));
-}
-
 // Rows before a row may nearly depend on each other although all rows together do not; then round-off in what
 // is left of a dependent row exceeds the tolerance. The singular values do not suffer from this: they say how
 // many rows depend.
@@ -161,6 +127,37 @@ std::vector<int> dependent_rows(const SparseRows& G) {
 }
 
 }  // namespace
+
+Index rigid_motions(const SparseRows& G, const ConstVec& q, const std::vector<int>& ghosts) {
+  const Index n = q.size() / 3, numbers = 3 * std::ssize(ghosts);
+  MatrixXd R = MatrixXd::Zero(q.size(), 6), E = MatrixXd::Zero(q.size(), numbers);
+  std::vector<char> in_space(static_cast<std::size_t>(n), 1);
+  for (std::size_t g = 0; g < ghosts.size(); ++g) {
+    in_space[static_cast<std::size_t>(ghosts[g])] = 0;
+    E.block<3, 3>(3 * ghosts[g], static_cast<Index>(3 * g)).setIdentity();
+  }
+  double size = std::numeric_limits<double>::min();
+  for (Index i = 0; i < n; ++i)
+    if (in_space[static_cast<std::size_t>(i)])
+      size = std::max(size, q.segment<3>(3 * i).lpNorm<Eigen::Infinity>());
+  for (Index i = 0; i < n; ++i) {
+    if (!in_space[static_cast<std::size_t>(i)]) continue;
+    const Vec3 x = q.segment<3>(3 * i) / size;
+    for (int k = 0; k < 3; ++k) {
+      R.block<3, 1>(3 * i, k) = Vec3::Unit(k);
+      R.block<3, 1>(3 * i, 3 + k) = Vec3::Unit(k).cross(x);
+    }
+  }
+  // Rows of G have the length 1 and entries of R are below 1: round-off is 1e-15, a motion that a row forbids
+  // 1e-3 and more.
+  const auto rank = [](const MatrixXd& A) {
+    return A.size() > 0 ? (singular_values(A).array() > 1e-9).count() : Index{0};
+  };
+  if (G.rows() == 0) return rank(R);
+  MatrixXd all(q.size(), 6 + numbers);
+  all << R, E;
+  return rank(R) - (rank(G * all) - rank(G * E));
+}
 
 Mobility analyse_mobility(const System& system, const ConstVec& q) {
   Mobility mobility;

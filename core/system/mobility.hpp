@@ -42,4 +42,9 @@ SparseRows picked_rows(const SparseRows& A, const std::vector<int>& rows);
 // At the pose q [3 n] of the solved nodes.
 Mobility analyse_mobility(const System& system, const ConstVec& q);
 
+// How many of the six rigid-body motions violate no constraint, of a structure that is not on one line: six
+// less the rank of G R, R = [translations, rotations]. Numbers of drives are nowhere in space and follow as
+// they must: with their coordinates E beside R, what [R, E] has and E alone does not.
+Index rigid_motions(const SparseRows& G, const ConstVec& q, const std::vector<int>& ghosts);
+
 }  // namespace unfurl

@@ -165,6 +165,48 @@ TEST_CASE("how far rows follow from one another is told and what takes their dig
   }
 }
 
+// Beside a pendulum, and afloat: cranks of positions with 4 to 8 decimals hold each other; those of all
+// digits move, and a crank braced against its pivots stands still as it is meant to.
+TEST_CASE("a linkage that stands still for want of digits is named whatever moves beside it") {
+  const auto put = [](std::string text, const std::string& behind, const std::string& more) {
+    return text.insert(text.find(behind) + behind.size(), more);
+  };
+  const auto warning_of = [](const std::string& scene) {
+    const auto model = model_of(scene);
+    return misfit_warning(model->system, node_positions(model->structure));
+  };
+  const auto beside = [&](const std::string& scene) {
+    return put(put(scene, "nodes = [",
+                   "{name = 'P', position = [9, 0, 0], fixed = true}, {name = 'Q', position = [9, 0, -1]}, "),
+               "rods = [", "{nodes = ['P', 'Q'], mass = 1}, ");
+  };
+  const auto afloat = [&](std::string scene) {
+    const std::string fixed = ", fixed = true";
+    for (std::size_t at = 0; (at = scene.find(fixed, at)) != std::string::npos;)
+      scene.erase(at, fixed.size());
+    return put(put(scene, "rods = [",
+                   "{nodes = ['A0', 'A1'], mass = 1}, {nodes = ['A1', 'A2'], mass = 1}, {nodes = ['A0', "
+                   "'A2'], mass = 1}, "),
+               "nodes = ['B0', 'B1', 'B2'", ", 'A0', 'A1', 'A2'");
+  };
+  for (const int decimals : {4, 5, 6, 8}) {
+    CAPTURE(decimals);
+    for (const std::string& scene : {beside(three_cranks(decimals)), afloat(three_cranks(decimals))}) {
+      const std::string warning = warning_of(scene);
+      CAPTURE(warning);
+      CHECK(has(warning, "hold each other and stand still, though they nearly leave one motion"));
+      CHECK(has(warning, "give its positions all 16 digits"));
+      CHECK_FALSE(has(warning, "P-Q"));
+    }
+  }
+  CHECK(warning_of(beside(three_cranks(17))).empty());
+  CHECK(warning_of(afloat(three_cranks(17))).empty());
+  CHECK(warning_of(beside(put(three_cranks(17), "rods = [", "{nodes = ['A0', 'B1'], mass = 1}, "))).empty());
+  const Simulation run = run_scene(beside(three_cranks(6)));
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(has(run.warnings.front(), "stand still"));
+}
+
 TEST_CASE("rods in line under a load across are named and slack helps") {
   const Simulation run = run_scene(in_line("0"));
   CHECK(run.status == RunStatus::failed);
