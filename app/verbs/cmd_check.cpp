@@ -15,6 +15,7 @@
 #include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/study/tolerance.hpp"
+#include "core/system/blocked_motion.hpp"
 #include "core/system/mobility.hpp"
 #include "core/system/rigid_twin.hpp"
 #include "core/system/self_stress.hpp"
@@ -240,7 +241,9 @@ int cmd_check(const Arguments& arguments) {
   judged.balance = force_balance(mechanism.system, start, judged.mobility, mechanism.structure.rods);
   for (const auto& note : model->structure.notes) std::cerr << "unfurl: warning: " << note << "\n";
   const InitialState at_start = initial_state(model->structure, model->system);
-  for (const std::string& warning : {velocity_warning(at_start, model->structure),
+  const bool own = model->structure.kind == "custom";
+  for (const std::string& warning : {own ? misfit_warning(model->system, start) : std::string(),
+                                     velocity_warning(at_start, model->structure),
                                      scene.solver.tolerance > 0  // steps are found
                                          ? std::string()
                                          : elastic_step_warning(*model, at_start.state, scene.solver)})
