@@ -68,15 +68,16 @@ class Checker {
         in_space_(space_coordinates(structure)),
         elastic_(std::any_of(structure.rods.begin(), structure.rods.end(),
                              [](const Rod& rod) { return rod.elastic(); })),
-        warms_(std::any_of(structure.rods.begin(), structure.rods.end(), [](const Rod& rod) {
-          return !rod.gives && rod.expansion != 0 && changes(rod.warming);
-        })) {}
+        warms_(std::any_of(
+            structure.rods.begin(), structure.rods.end(),
+            [](const Rod& rod) { return !rod.gives && rod.expansion != 0 && changes(rod.warming); })),
+        own_(structure.kind == "custom") {}
 
   void run() {
     check_positions();
-    if (system_.coordinates() > max_coordinates) return;
     const bool driven = !system_.drives().empty();
     if (!driven && system_.all_constraints() < system_.coordinates()) return;
+    if (system_.coordinates() > max_coordinates) return check_freedom_of_many();
     G_ = dense_unit_rows(system_, q_, norms_);
     if (driven)
       for (const Drive& drive : system_.drives()) check_drive(drive);
@@ -193,6 +194,14 @@ class Checker {
     if (rank_of(G_, 0.01 * dependent_row) < G_.cols()) return;  // as nearly always, and cheaper
     const VectorXd values = singular_values(G_);
     if (values.size() < G_.cols() || !(values[G_.cols() - 1] > dependent_row)) return;
+    refuse_to_stand_still(too_few_digits(values[G_.cols() - 1]));
+  }
+  // By sparse elimination. Families of many parts are made to move.
+  void check_freedom_of_many() const {
+    if (!own_ || elastic_ || warms_ || !system_.drives().empty()) return;
+    if (analyse_mobility(system_, q_).degrees_of_freedom == 0) refuse_to_stand_still("");
+  }
+  void refuse_to_stand_still(const std::string& doubt) const {
     std::vector<std::string> names, members;
     for (const int row : counted_rows(system_, q_)) names.push_back(name(row));
     for (auto n = names.rbegin(); n != names.rend(); ++n)  // what is held or driven by name comes first
@@ -200,8 +209,8 @@ class Checker {
     for (const auto& n : names)
       if (n.rfind("rod ", 0) == 0) members.push_back(n);
     throw StructureError("", "nothing can move: " + std::to_string(names.size()) + " constraints hold all " +
-                                 std::to_string(G_.cols()) + " coordinates; " +
-                                 too_few_digits(values[G_.cols() - 1]) + "free one of " + listed(members));
+                                 std::to_string(system_.coordinates()) + " coordinates; " + doubt +
+                                 "free one of " + listed(members));
   }
 
   // A structure that moves has rows that depend on each other exactly; positions with few digits leave a
@@ -226,6 +235,7 @@ class Checker {
   Index in_space_;  // of q_; behind it lie ghosts
   bool elastic_;    // a truss that stands still has forces and frequencies all the same
   bool warms_;      // a row prescribes a motion, whenever that is
+  bool own_;        // a scene's own structure
   MatrixXd G_;      // unit rows
   VectorXd norms_;
 };

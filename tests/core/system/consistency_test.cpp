@@ -130,4 +130,28 @@ change = 10
   CHECK(testing::end_positions(run)[3] == Approx(1.01).epsilon(1e-14));
 }
 
+// A tower of as many storeys, two nodes each, all of them braced: 906 coordinates from 150 on.
+TEST_CASE("what cannot move is refused however large it is and moves with a brace less") {
+  const auto tower = [](int storeys, bool braced) {
+    const std::string many = std::to_string(storeys + 1), last = braced ? many : std::to_string(storeys);
+    return "[structure]\nkind = 'custom'\nnodes = [{name = 'A0', position = [0, 0, 0], fixed = true}, "
+           "{name = 'B0', position = [1, 0, 0], fixed = true}, {repeat = {i = '1:" +
+           many + "'}, name = 'A{i}', position = [0, 0, '=i']}, {repeat = {i = '1:" + many +
+           "'}, name = 'B{i}', position = [1, 0, '=i']}]\nrods = [{repeat = {i = '1:" + many +
+           "'}, nodes = ['A{i-1}', 'A{i}'], mass = 1}, {repeat = {i = '1:" + many +
+           "'}, nodes = ['B{i-1}', 'B{i}'], mass = 1}, {repeat = {i = '1:" + many +
+           "'}, nodes = ['A{i}', 'B{i}'], mass = 1}, {repeat = {i = '1:" + last +
+           "'}, nodes = ['A{i-1}', 'B{i}'], mass = 1}]\n[[constraints]]\nkind = 'plane'\nnodes = "
+           "['*']\nnormal = [0, 1, 0]\n";
+  };
+  for (const int storeys : {3, 160}) {
+    CAPTURE(storeys);
+    const std::string error = testing::error_of(tower(storeys, true));
+    CHECK(error.find("nothing can move: ") != std::string::npos);
+    CHECK(error.find(" constraints hold all " + std::to_string(6 * (storeys + 1)) + " coordinates") !=
+          std::string::npos);
+    CHECK(testing::error_of(tower(storeys, false)).empty());
+  }
+}
+
 }  // namespace consistency_test
