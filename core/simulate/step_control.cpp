@@ -123,7 +123,11 @@ double StepControl::next(const State& state) {
   const double wanted = largest_ / density(state);
   double h = previous_ > 0 ? wanted * wanted / previous_ : 0.0;
   if (!(h <= out_of_step * wanted && wanted <= out_of_step * h)) h = start(state);
-  return previous_ = std::clamp(h, smallest_share * largest_, largest_);
+  return previous_ = clamped(h);
+}
+
+double StepControl::clamped(double h) const {
+  return std::clamp(h, smallest_share * largest_, largest_);
 }
 
 }  // namespace unfurl

@@ -31,6 +31,8 @@ class StepControl {
   StepControl(const Structure& structure, const System& system, const SolverOptions& options);
   // The step that follows `state` [s]; to be asked once for every accepted state, in order.
   double next(const State& state);
+  // The step that follows one which no step leads to.
+  double anew(const State& state) { return clamped(start(state)); }
   // As if the last step had been h [s].
   void continue_from(double h) { previous_ = h; }
   double last() const { return previous_; }
@@ -39,6 +41,7 @@ class StepControl {
   double density(const State& state);  // Q
   double swing(const State& state);    // at rates and accelerations in v_, a_ [1/s]
   double start(const State& state);
+  double clamped(double h) const;
 
   const Structure& structure_;
   System system_;  // follows the states

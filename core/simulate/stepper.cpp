@@ -22,6 +22,23 @@
 
 namespace unfurl {
 
+StepControl& Stepper::Loop::control() {
+  if (controlled_ != &system()) {  // the first step, or the model has changed
+    controlled_ = &system();
+    control_.emplace(run_.trajectory.structure(), *controlled_, run_.options);
+    if (const double h = std::exchange(last_step_, 0.0); h > 0) control_->continue_from(h);
+  }
+  return *control_;
+}
+
+// What is left of a step in which rates or forces have jumped, by what they are behind that.
+void Stepper::Loop::plan_anew() {
+  const double h = control().anew(now());
+  if (!(now().t + 1.001 * h < target_)) return;
+  control_->continue_from(h);
+  target_ = now().t + h, edge_ = false;
+}
+
 // A longer step, as far as time has no edge, where this one begins or ends too close to a singular pose.
 // The grid goes on after that.
 void Stepper::Loop::step_over(Probe& to, double& h) {

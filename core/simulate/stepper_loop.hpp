@@ -122,16 +122,15 @@ class Stepper::Loop {
   TimeGrid::Target next_target() {
     begin_anew_behind_part();
     if (!run_.options.adaptive) return grid_.next(now().t);
-    if (controlled_ != &system()) {  // the first step, or the model has changed
-      controlled_ = &system();
-      control_.emplace(run_.trajectory.structure(), *controlled_, run_.options);
-      if (const double h = std::exchange(last_step_, 0.0); h > 0) control_->continue_from(h);
-    }
-    return grid_.next(now().t, control_->next(now()));
+    return grid_.next(now().t, control().next(now()));
   }
+
+  StepControl& control();
+  void plan_anew();
 
   bool go(const TimeGrid::Target& target) try {
     target_ = target.t;
+    new_motion_ = false;
     edge_ = target.edge;
     pushed_.reset();
     double h = target.h;
@@ -140,8 +139,10 @@ class Stepper::Loop {
       const double short_of = integrator_->longest_step(now(), h, std::max(h, run_.options.step));
       part_end_ = short_of < h ? now().t + short_of : target_;
       if (!part(short_of)) return ended_ = true, false;
+      if (std::exchange(new_motion_, false) && run_.options.adaptive) plan_anew();
       h = target_ - now().t;
     }
+    if (now().t < target.t) return true;
     if (target.edge) integrator_->restart();
     return !target.jumps || jump(target.jump) || (ended_ = true, false);
   } catch (const CannotFactorise& error) {
@@ -206,6 +207,7 @@ class Stepper::Loop {
     append(std::move(state), StepReport{});
     integrator_->restart();
     have_begin_ = false;
+    new_motion_ = true;
   }
 
   bool fail(const std::string& why, bool in_a_step = false) {
@@ -406,6 +408,7 @@ class Stepper::Loop {
     probing_.reset();
     sides_.forget_model();
     have_begin_ = false;
+    new_motion_ = true;
   }
 
   // --- the deployed pose ---
@@ -457,6 +460,7 @@ class Stepper::Loop {
   TimeGrid grid_;
   double target_ = 0, part_end_ = 0;  // of the present step, and of what is solved of it at once
   bool edge_ = false;                 // time has an edge at target_
+  bool new_motion_ = false;           // rates or forces have jumped within the present step
   std::unique_ptr<Integrator> integrator_, probing_;
   std::optional<StepControl> control_;
   const System* controlled_ = nullptr;
