@@ -324,7 +324,9 @@ class SteppedScene {
   }
   std::vector<std::string> all_warnings() const {
     std::vector<std::string> said = idle();
-    said.insert(said.end(), said_.begin(), said_.end());
+    const std::vector<std::string> of_start =
+        scene_.solver.adaptive ? start_warnings(*model_, scene_.solver, stepper_.swing()) : said_;
+    said.insert(said.end(), of_start.begin(), of_start.end());
     said.insert(said.end(), stepper_.run().warnings.begin(), stepper_.run().warnings.end());
     return said;
   }

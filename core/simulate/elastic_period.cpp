@@ -39,6 +39,8 @@ bool has_springs(const Structure& structure) {
   });
 }
 
+}  // namespace
+
 // Of a period, the longest step that leaves a swing's phase within 0.05 rad in each, and no less than those
 // above: n Gauss points are behind by (h w)^(2 n) n!^2 / ((2 n)! (2 n + 1)!) of the phase (the diagonal Pade
 // approximation of exp(i h w)).
@@ -48,6 +50,8 @@ double swing_share_of(const SolverOptions& options) {
   const double logs = std::lgamma(2 * n + 1) + std::lgamma(2 * n + 2) - 2 * std::lgamma(n + 1);
   return std::max(followed_share, std::exp((std::log(0.05 / (2 * pi)) + logs) / (2 * n)) / (2 * pi));
 }
+
+namespace {
 
 std::string spring_step_warning(double period, const SolverOptions& options) {
   const double followed = period * swing_share_of(options);
@@ -182,6 +186,16 @@ FastestPeriods fastest_periods(const Model& model, const State& state) {
   return SmallMotions(model, state).fastest();
 }
 
+// Do steps of turn / swing resolve the fastest one?
+bool is_followed(double period, const Model& model, const State& start, const SolverOptions& options,
+                 double swing) {
+  if (!options.adaptive || bends(model.structure) || !std::isfinite(period)) return false;
+  StepControl control(model.structure, model.system, options);
+  control.next(start);
+  return swing >= 0 &&
+         options.turn <= period * swing_share_of(options) * std::max(swing, control.swing().omega);
+}
+
 }  // namespace
 
 double fastest_elastic_period(const Model& model, const State& state) {
@@ -189,14 +203,13 @@ double fastest_elastic_period(const Model& model, const State& state) {
   return std::min(periods.of_rods, periods.on_springs);
 }
 
-std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options) {
+std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options,
+                                 double swing) {
   const Method* method = find_method(options.method);
   if (!method || method->claims(options).damps) return {};
   const FastestPeriods periods = fastest_periods(model, start);
   const double period = periods.of_rods;
-  const double wanted = options.turn * periods.on_springs / (2 * pi);
-  const bool followed = options.adaptive && std::isfinite(wanted) && !bends(model.structure) &&
-                        StepControl(model.structure, model.system, options).next(start) < 1.5 * wanted;
+  const bool followed = is_followed(periods.on_springs, model, start, options, swing);
   const std::string springs = followed ? "" : spring_step_warning(periods.on_springs, options);
   if (!(options.step > followed_share * period)) return springs;
   std::ostringstream text;

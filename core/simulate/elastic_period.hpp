@@ -16,11 +16,15 @@ class OneSided;
 // percent.
 double fastest_elastic_period(const Model& model, const State& state);
 
+// Of the period of a swing on springs, the longest step that follows it.
+double swing_share_of(const SolverOptions& options);
+
 // What is said where the steps of a run are longer than a quarter of that period, with both numbers and what
 // there is to choose; empty: nothing. Of a method that damps what it does not resolve, nothing. Of what
 // swings on springs, more stages of dvm follow in a longer step what fewer would not, and adaptive steps what
-// their first one goes by.
-std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options);
+// they go by at the start or went by behind it, `swing` [1/s] as of Stepper.
+std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options,
+                                 double swing = 0);
 
 // The same of cable i, which begins to pull: of how what it holds back swings on it. More stages of dvm
 // follow in a longer step what fewer would not.

@@ -77,10 +77,10 @@ std::string drift_warning(const Model& model, const SolverOptions& options) {
 }
 
 std::vector<std::string> warnings_of_start(const Model& model, const InitialState& start,
-                                           const SolverOptions& options) {
+                                           const SolverOptions& options, double swing) {
   std::vector<std::string> warnings = model.structure.notes;
   std::vector<std::string> said{velocity_warning(start, model.structure),
-                                elastic_step_warning(model, start.state, options),
+                                elastic_step_warning(model, start.state, options, swing),
                                 drift_warning(model, options)};
   if (model.structure.kind == "custom")
     said.push_back(misfit_warning(model.system, node_positions(model.structure)));
@@ -111,8 +111,8 @@ Parts parts_for(const Model& model) {
   return parts;
 }
 
-std::vector<std::string> start_warnings(const Model& model, const SolverOptions& options) {
-  return warnings_of_start(model, initial_state(model.structure, model.system), options);
+std::vector<std::string> start_warnings(const Model& model, const SolverOptions& options, double swing) {
+  return warnings_of_start(model, initial_state(model.structure, model.system), options, swing);
 }
 
 Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& options,
@@ -124,13 +124,12 @@ Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& opt
 Simulation simulate_in_parts(std::shared_ptr<const Model> model, const SolverOptions& options,
                              const SimulationHooks& hooks, const Parts& parts, std::size_t& first_new) {
   if (!find_method(options.method)) throw std::invalid_argument("no method is called " + options.method);
-  InitialState start = initial_state(model->structure, model->system);
-  const std::vector<std::string> warnings = warnings_of_start(*model, start, options);
+  const InitialState start = initial_state(model->structure, model->system);
   const bool stretches = model->structure.quasi_static;
   double begin = thread_cpu_seconds();
   Progress progress(hooks, start.state.t, options.end_time);
-  Stepper stepper = parts.archived ? Stepper(std::move(model), options, *parts.archived)
-                                   : Stepper(std::move(model), options, std::move(start.state));
+  Stepper stepper =
+      parts.archived ? Stepper(model, options, *parts.archived) : Stepper(model, options, start.state);
   while (stepper.time() < options.end_time) {
     progress.at(stepper.time());
     if (hooks.cancelled && hooks.cancelled()) stepper.stop();
@@ -146,10 +145,12 @@ Simulation simulate_in_parts(std::shared_ptr<const Model> model, const SolverOpt
     begin += thread_cpu_seconds() - pause;
   }
   first_new = stepper.first_new();
+  const double swing = stepper.swing();
   Simulation run = stepper.take();
   if (run.status == RunStatus::completed || run.status == RunStatus::deployed) progress.report(1.0);
-  run.warnings.insert(run.warnings.begin(), warnings.begin(), warnings.end());
   run.cpu_s = thread_cpu_seconds() - begin;
+  const std::vector<std::string> warnings = warnings_of_start(*model, start, options, swing);
+  run.warnings.insert(run.warnings.begin(), warnings.begin(), warnings.end());
   if (stretches) add_stretch(run.trajectory);
   return run;
 }

@@ -65,7 +65,8 @@ Simulation simulate(std::shared_ptr<const Model> model, const SolverOptions& opt
 
 // What a run says before its first step: notes of the structure, velocities and rods that do not fit, steps
 // that are too long for what is stiff. A Stepper leaves that to whom it steps for, and add_stretch(), too.
-std::vector<std::string> start_warnings(const Model& model, const SolverOptions& options);
+// `swing`: what adaptive steps followed behind it, of Stepper.
+std::vector<std::string> start_warnings(const Model& model, const SolverOptions& options, double swing = 0);
 
 double thread_cpu_seconds();  // of the calling thread so far: what cpu_s is a difference of
 

@@ -35,10 +35,10 @@ StepControl::StepControl(const Structure& structure, const System& system, const
 // damped by as much of them as varies with rates; rods that give are left to methods that stop their waves.
 // Nothing where a swing is too small to matter: with r = K x its frequency is (r . M^-1 r / x . r)^1/2, and
 // its amplitude max |r_i| / m_i over the third power of that for x = w, over the fourth for x = w'.
-double StepControl::swing(const State& state) {
+StepControl::Swing StepControl::swing(const State& state) {
   constexpr double small = 1e-6;    // of a length, of a rate: rounding leaves 1e-10 of a stretch
   constexpr double matters = 1e-6;  // of a length, an amplitude
-  if (system_.constant_forces() || bends_ || system_.rheonomic()) return 0;  // what is driven swings not
+  if (system_.constant_forces() || bends_ || system_.rheonomic()) return {};  // what is driven swings not
   const VectorXd still = VectorXd::Zero(system_.elastic_rods() ? std::ssize(system_.giving_rods()) : 0);
   const auto add = [&](const VectorXd& q, const VectorXd& v, double scale) {
     if (system_.elastic_rods())
@@ -47,6 +47,10 @@ double StepControl::swing(const State& state) {
       system_.add_applied_force(state.t, q, v, scale, f_);
   };
   double stiffness = 0, damping = 0, mass = 0, square_of_force = 0, most[2] = {};
+  const auto frequency = [&] {
+    const double square = stiffness / mass - std::pow(0.5 * damping / mass, 2);
+    return square > 0 ? std::sqrt(square) : 0.0;
+  };
   VectorXd r(state.w.size());
   const auto look_along = [&](const VectorXd& x, const VectorXd& w, double weight, double& largest) {
     const double size = x.lpNorm<Eigen::Infinity>();
@@ -65,12 +69,13 @@ double StepControl::swing(const State& state) {
     mass += weight * 2 * system_.kinetic_energy(w);
   };
   look_along(v_, state.w, 1, most[0]);
+  const double of_rates = frequency();
   look_along(a_, acceleration_, largest_ * largest_, most[1]);
-  if (!(stiffness > 0)) return 0;
+  if (!(stiffness > 0)) return {};
   const double omega = std::sqrt(square_of_force / stiffness);
-  if (!(std::max(most[0], most[1] / omega) > matters * length_ * omega * omega * omega)) return 0;
-  const double square = stiffness / mass - std::pow(0.5 * damping / mass, 2);
-  return square > 0 ? std::sqrt(square) : 0.0;
+  const double least = matters * length_ * omega * omega * omega;
+  if (!(std::max(most[0], most[1] / omega) > least)) return {};
+  return {frequency(), most[0] > least ? of_rates : 0.0};
 }
 
 double StepControl::density(const State& state) {
@@ -83,6 +88,7 @@ double StepControl::density(const State& state) {
   else
     a_.setZero();
   double omega = 0, change = 0;
+  swing_ = {};
   for (const Rod& rod : structure_.rods) {
     const auto of = [&](const VectorXd& x) -> Vec3 {
       return x.segment<3>(3 * rod.b) - x.segment<3>(3 * rod.a);
@@ -92,7 +98,8 @@ double StepControl::density(const State& state) {
     omega = std::max(omega, 0.5 * (rate + std::sqrt(rate * rate + 2 * bend * turn_)));
   }
   if (known_) {
-    omega = std::max(omega, swing(state));
+    swing_ = swing(state);
+    omega = std::max(omega, swing_.omega);
     const double r0 = turn_ / largest_;
     const double w = std::sqrt(2 * system_.kinetic_energy(state.w));
     const double a = std::sqrt(2 * system_.kinetic_energy(acceleration_));
@@ -121,6 +128,7 @@ double StepControl::start(const State& state) {
 
 double StepControl::next(const State& state) {
   const double wanted = largest_ / density(state);
+  asked_ = swing_;
   double h = previous_ > 0 ? wanted * wanted / previous_ : 0.0;
   if (!(h <= out_of_step * wanted && wanted <= out_of_step * h)) h = start(state);
   return previous_ = clamped(h);

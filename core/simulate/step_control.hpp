@@ -31,6 +31,12 @@ class StepControl {
   StepControl(const Structure& structure, const System& system, const SolverOptions& options);
   // The step that follows `state` [s]; to be asked once for every accepted state, in order.
   double next(const State& state);
+  // What swings on springs in the state last asked for, by the share of the energy that it has, and by that
+  // of the kinetic energy alone [1/s].
+  struct Swing {
+    double omega = 0, of_rates = 0;
+  };
+  const Swing& swing() const { return asked_; }
   // The step that follows one which no step leads to.
   double anew(const State& state) { return clamped(start(state)); }
   // As if the last step had been h [s].
@@ -39,7 +45,7 @@ class StepControl {
 
  private:
   double density(const State& state);  // Q
-  double swing(const State& state);    // at rates and accelerations in v_, a_ [1/s]
+  Swing swing(const State& state);     // at rates and accelerations in v_, a_
   double start(const State& state);
   double clamped(double h) const;
 
@@ -48,6 +54,7 @@ class StepControl {
   Index1 index1_;
   double largest_, turn_, length_;
   bool bends_;
+  Swing swing_, asked_;
   double previous_ = 0;  // the last step [s]; 0 before the first
   bool known_ = false;   // acceleration_ is that of the last state asked for
   VectorXd acceleration_, lambda_, q_, v_, a_, f_, moving_mass_;

@@ -31,6 +31,17 @@ StepControl& Stepper::Loop::control() {
   return *control_;
 }
 
+// A step that led to a swing, be it from rest, and was too long for it did not follow it.
+void Stepper::Loop::note_swing() {
+  const auto& [omega, of_rates] = control_->swing();
+  const std::size_t n = run_.trajectory.size();
+  const double led_here = n > 1 ? now().t - run_.trajectory.time(n - 2) : 0.0;
+  if (swing_ < 0 || led_here * of_rates > 2 * pi * swing_share_of(run_.options))
+    swing_ = -1;
+  else
+    swing_ = std::max(swing_, omega);
+}
+
 // What is left of a step in which rates or forces have jumped, by what they are behind that.
 void Stepper::Loop::plan_anew() {
   const double h = control().anew(now());
@@ -428,6 +439,9 @@ void Stepper::archive(Archive& archive) {
   double start = loop_->start();
   archive(start);
   loop_->archive(archive);
+}
+double Stepper::swing() const {
+  return loop_->swing();
 }
 void Stepper::stop() {
   loop_->end();

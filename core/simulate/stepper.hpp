@@ -41,6 +41,9 @@ class Stepper {
   // is among that of the loads. The method begins anew, as after any jump of a load; a force that stays the
   // same costs nothing.
   void set_force(int node, const Vec3& force);
+  // The fastest swing on springs that adaptive steps have followed, by its share of the energy [1/s]; below
+  // zero where one began within a step that did not.
+  double swing() const;
   void stop();  // ends the run as stopped by the user
 
   // Hands over all of the run but its last states, which go on being known here: what was handed over is

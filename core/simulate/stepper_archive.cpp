@@ -72,7 +72,7 @@ void Stepper::Loop::archive(Archive& archive) {
   archive_models(archive);
   archive(turning_back_);
   archive(turned_);
-  for (double* x : {&target_, &part_end_, &last_step_, &crowd_time_, &unwatched_until_, &margin_})
+  for (double* x : {&target_, &part_end_, &last_step_, &swing_, &crowd_time_, &unwatched_until_, &margin_})
     archive(*x);
   for (bool* x : {&deployed_, &ended_, &regular_}) archive(*x);
   if (archive.reading()) model_changed();

@@ -104,6 +104,7 @@ class Stepper::Loop {
   void end() { ended_ = true; }
   std::size_t first_new() const { return new_; }
   double start() const { return start_; }
+  double swing() const { return swing_; }
 
   Window take_window(std::size_t around);
   void archive(Archive& archive);
@@ -122,10 +123,13 @@ class Stepper::Loop {
   TimeGrid::Target next_target() {
     begin_anew_behind_part();
     if (!run_.options.adaptive) return grid_.next(now().t);
-    return grid_.next(now().t, control().next(now()));
+    const double wanted = control().next(now());
+    note_swing();
+    return grid_.next(now().t, wanted);
   }
 
   StepControl& control();
+  void note_swing();
   void plan_anew();
 
   bool go(const TimeGrid::Target& target) try {
@@ -480,8 +484,8 @@ class Stepper::Loop {
   bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false;
   double margin_ = stepping::singular_margin;  // a tenth of where the run began, if that is less
   VectorXd q_;
-  std::size_t new_ = 0, part_ = 0;  // first state that was not handed over, first of the present part
-  double last_step_ = 0;            // of the control of steps, where that begins anew
+  std::size_t new_ = 0, part_ = 0;    // first state that was not handed over, first of the present part
+  double last_step_ = 0, swing_ = 0;  // of the control of steps: where that begins anew, Stepper's
   bool latched_ = false;
   std::string locked_sides_;  // what was held when a latch locked it; empty: nothing was
   double locked_at_ = 0;

@@ -354,12 +354,43 @@ values = [0, 1]
       changes.push_back("solver.turn=" + exact_number(turn));
       const Simulation run = run_scene(c.scene, changes);
       REQUIRE(run.status == RunStatus::completed);
+      CHECK(run.warnings.empty());
       return std::abs(end_positions(run)[3] - c.x);
     };
     const double coarse = error(0.05), fine = error(0.025);
     CHECK(coarse < 1e-5 * std::abs(c.x - 1));  // turn^4 = 6e-6
     CHECK(std::log2(coarse / fine) == Approx(4).margin(0.4));
   }
+}
+
+// A load that jumps or a blow sets a mass on a spring swinging, at rest before, in steps that follow it; a
+// load that begins to grow does so within a step of 10 rad. At rest nothing is followed.
+TEST_CASE("a swing on springs is told where adaptive steps do not follow what begins it") {
+  const auto told = [](const std::string& times, const std::string& values) {
+    const Simulation run = run_scene(R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "P", position = [1, 0, 0], mass = 1}]
+[[constraints]]
+kind = "line"
+nodes = ["P"]
+direction = [1, 0, 0]
+[[forces]]
+kind = "spring"
+nodes = ["O", "P"]
+stiffness = 1e6
+[[forces]]
+kind = "load_over_time"
+nodes = ["P"]
+force = [1, 0, 0]
+times = )" + times + "\nvalues = " + values +
+                                     "\n[solver]\nadaptive = true\nstep = 0.01\nend_time = 0.1\n");
+    REQUIRE(run.status == RunStatus::completed);
+    return !run.warnings.empty() && run.warnings[0].find("fastest swing on springs") != std::string::npos;
+  };
+  CHECK_FALSE(told("[0, 0.05, 0.05, 1]", "[0, 0, 1e4, 1e4]"));
+  CHECK_FALSE(told("[0, 0.05, 0.0505, 1]", "[0, 0, 1e4, 1e4]"));
+  CHECK(told("[0, 0.05, 1.05]", "[0, 0, 4e5]"));
+  CHECK(told("[0, 1]", "[0, 0]"));
 }
 
 TEST_CASE("the cubic and the quintic through two states reproduce polynomials") {
