@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/diagnostics/books.hpp"
+#include "core/diagnostics/energy_tops.hpp"
 #include "core/diagnostics/force_round_off.hpp"
 #include "core/diagnostics/motion_samples.hpp"
 #include "core/diagnostics/peak_by_states.hpp"
@@ -381,30 +382,29 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
                                 double sign) {
   const Series* column = d.find(name);
   if (!column) return {};
-  const auto signed_values = [sign](const Series& series) {
-    std::vector<double> out = series.values;
+  const auto signed_values = [sign](std::vector<double> out) {
     for (double& x : out) x *= sign;
     return out;
   };
   const StateValues values = [&](const Simulation& piece) {
     Diagnostics made;
-    std::vector<double> out = signed_values(judged_piece(piece, column->unit == "J", made).at(name));
-    if (name == "fold_angle_rad") count_on(run.trajectory, piece, signed_values(*column), 2 * pi, out);
-    if (name == "fold_angle_deg") count_on(run.trajectory, piece, signed_values(*column), 360, out);
+    std::vector<double> out = signed_values(judged_piece(piece, column->unit == "J", made).at(name).values);
+    if (name == "fold_angle_rad") count_on(run.trajectory, piece, signed_values(column->values), 2 * pi, out);
+    if (name == "fold_angle_deg") count_on(run.trajectory, piece, signed_values(column->values), 360, out);
     return out;
   };
-  const std::vector<double> at_states = signed_values(*column);
+  const std::vector<double> at_states = signed_values(column->values);
   std::vector<std::size_t> also = rod_humps(run.trajectory, d, name, sign);
   if (sign < 0) std::ranges::copy(reaction_dips(d, name), std::back_inserter(also));
   PeakInMotion top = top_of_motion(run, at_states, of_the_state(*column) ? values : StateValues(), also);
+  top = top_of_energy(run.trajectory, d, *column, sign, joined, top);
   if (is_force(*column) && at_states.size() == run.trajectory.size())
     if (const PeakInMotion rise = without_bound(run, at_states, values, round_off_within_steps(*column, d));
         !std::isnan(rise.value)) {
       if (!(rise.value <= top.value)) top = rise;
       top.bounded = false, top.rise_t = rise.t;
     }
-  top.value *= sign;
-  return top;
+  return top.value *= sign, top;
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ double largest_in_motion(const Simulation& run, const std::vector<double>& at_st
                          const StateValues& values);
 
 // Largest and smallest value of a column of series.csv over the motion. Columns that are sums over the run's
-// steps (energies that went in or out, errors, counts) are taken at the states.
+// steps (energies that went in or out, errors, counts) are taken at the states, but for NAME.energy_J of
+// drives (energy_tops.hpp).
 double largest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
 double smallest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column);
 PeakInMotion extreme_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column,

@@ -28,6 +28,12 @@ constexpr double same_end = 1e-8;  // of the way: the motion gets there
 constexpr double dead = 1e-5;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+// drives / resistances - 1; what rounding leaves of sums that are the same is nothing.
+double beyond(double drives, double resistances) {
+  constexpr double same = 1e-14;
+  return std::abs(drives - resistances) <= same * resistances ? 0.0 : drives / resistances - 1;
+}
+
 std::string in_degrees(double angle) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g deg", angle / radians_per_degree);
@@ -167,7 +173,7 @@ class MarginMaker {
     double sum() const { return drives + resistances; }
     double margin() const {
       if (resistances <= nothing * drives) return drives > 0 ? infinite : 0.0;
-      return drives / resistances - 1;
+      return beyond(drives, resistances);
     }
   };
 
@@ -304,7 +310,7 @@ class MarginMaker {
 }  // namespace
 
 double MarginReach::margin() const {
-  return resisted > nothing * driven ? driven / resisted - 1 : infinite;
+  return resisted > nothing * driven ? beyond(driven, resisted) : infinite;
 }
 
 Margin margin_of(const std::shared_ptr<const Model>& model, const SolverOptions& options,

@@ -9,6 +9,7 @@
 #include "core/integrators/dvm.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/math/largest.hpp"
+#include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/structure/time_edges.hpp"
@@ -142,6 +143,18 @@ double distance_of_other(const Ladder& other, const std::vector<VectorXd>& solut
   return nearest;
 }
 
+// The finest steps of both ladders are a 64th of an interval; these are 16 of solver.step where a study has
+// no steps of its own.
+std::string told_cure(const Model& model, double interval) {
+  constexpr double finest = 1.0 / 64, share = 0.25;  // of a period
+  const double period = fastest_elastic_period(model, initial_state(model.structure, model.system).state);
+  if (!(finest * interval > share * period))
+    return "give the motion an earlier solver.end_time, before it becomes chaotic or singular";
+  return "steps of " + short_number(finest * interval) +
+         " s, its finest, do not resolve the fastest swing on springs or wave of rods, " +
+         short_number(period) + " s: solver.step = " + short_number(period);
+}
+
 }  // namespace
 
 double node_distance(const ConstVec& a, const ConstVec& b) {
@@ -203,11 +216,11 @@ Reference solve_reference(const std::shared_ptr<const Model>& model, double end,
                               std::max(goal, best.uncertainty));
   }
   if (!agrees(best))
-    throw ReferenceError(
-        "the reference does not converge: " +
-        (best.solution ? "its best two solutions differ by " + short_number(best.uncertainty) + " m"
-                       : std::string("no two solutions run through")) +
-        "; give the motion an earlier solver.end_time, before it becomes chaotic or singular");
+    throw ReferenceError("the reference does not converge: " +
+                         (best.solution
+                              ? "its best two solutions differ by " + short_number(best.uncertainty) + " m"
+                              : std::string("no two solutions run through")) +
+                         "; " + told_cure(*model, end / intervals));
   if (apart > least(best) && !std::isinf(apart))
     throw ReferenceError("there is no reference: two methods, each of which agrees with itself to " +
                          short_number(best.uncertainty) + " m, differ by " + short_number(apart) + " m");

@@ -173,4 +173,33 @@ TEST_CASE("friction that goes on holding leaves no margin at a dead centre") {
     }
 }
 
+// A torsion spring drives an arm from rest up to its free angle and resists as far behind it: all its work is
+// taken up where the motion ends, of both only rounding differs.
+TEST_CASE("a margin that is nothing is told as nothing") {
+  const Margin margin = margin_there(read_scene_text(R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "G", position = [1, 0, 0], fixed = true},
+         {name = "B", position = [1, 0, 0]}]
+rods = [{nodes = ["A", "B"], mass = 3}, {nodes = ["A", "G"], mass = 1}]
+[[constraints]]
+kind = "plane"
+nodes = ["B"]
+normal = [0, 1, 0]
+[[forces]]
+kind = "torsion_spring"
+nodes = ["G", "A", "B"]
+axis = [0, 1, 0]
+stiffness = 10
+free_angle = 45
+[deployment]
+measure = "angle G A B about 0 1 0"
+deployed = 90
+[solver]
+end_time = 20
+)",
+                                                     "arm.toml"));
+  CHECK(margin.dynamic_min == 0.0);
+  CHECK(margin.arrives);
+}
+
 }  // namespace margin_dead_centre_test

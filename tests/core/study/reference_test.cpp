@@ -147,6 +147,31 @@ TEST_CASE("a motion that no two solutions agree on has no reference") {
   CHECK_THROWS_WITH(solve_reference(model, 60, 10, {}), Catch::Contains("the reference does not converge"));
 }
 
+// 1 kg on 1e8 N/m swings in 2 pi / 1e4 s, of which intervals of 40 in 64 parts leave 1.6 parts in each, those
+// of 16 four. Told with three digits.
+TEST_CASE("a swing that no steps of a reference resolve is told, with steps that do") {
+  const auto model = build_model(read_scene_text(R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "P", position = [1.0001, 0, 0], mass = 1}]
+[[constraints]]
+kind = "line"
+nodes = ["P"]
+direction = [1, 0, 0]
+[[forces]]
+kind = "spring"
+nodes = ["O", "P"]
+stiffness = 1e8
+free_length = 1
+)",
+                                                 "stiff.toml"));
+  CHECK_THROWS_WITH(solve_reference(model, 0.05, 2, {}),
+                    Catch::Contains("do not resolve the fastest swing") &&
+                        Catch::Contains("solver.step = 0.000628") && !Catch::Contains("chaotic"));
+  // Rounding of 1e-16 m in the place is 1e-12 of the swing.
+  const Reference found = solve_reference(model, 0.05, 5, {});
+  CHECK(found.q.back()[3] == Approx(1 + 1e-4 * std::cos(500.0)).epsilon(0).margin(1e-11));
+}
+
 TEST_CASE("a reference can be cancelled") {
   StudyHooks hooks;
   hooks.cancelled = [] { return true; };
