@@ -143,6 +143,49 @@ std::optional<BoxSolution> solve_box(const MatrixXd& D, const VectorXd& b, const
   return out;
 }
 
+namespace {
+
+// Of a change of x by which no w of a held row changes: row k, beside what rounding makes of that of i.
+bool changes(const MatrixXd& D, const VectorXd& d, Index k, Index i) {
+  return k != i && std::abs(d[k]) * std::sqrt(D(k, k)) > box_dependent * std::abs(d[i]) * std::sqrt(D(i, i));
+}
+
+void exchange(BoxSolution& solution, Index out, Index in) {
+  solution.held[static_cast<std::size_t>(out)] = false;
+  solution.held[static_cast<std::size_t>(in)] = true;
+}
+
+}  // namespace
+
+void give_over(const MatrixXd& D, const std::vector<bool>& pushes, Index i, BoxSolution& solution) {
+  const VectorXd d = -solution.x[i] * past_held(D, solution.held, i);
+  double most = 1;
+  Index out = -1;
+  for (Index k = 0; k < d.size(); ++k)
+    if (pushes[static_cast<std::size_t>(k)] && d[k] < 0 && changes(D, d, k, i) &&
+        -solution.x[k] / d[k] < most)
+      most = -solution.x[k] / d[k], out = k;
+  solution.x += most * d;
+  if (out >= 0) exchange(solution, out, i);
+}
+
+void take_over(const MatrixXd& D, const VectorXd& low, const VectorXd& high, const std::vector<bool>& pushes,
+               Index i, BoxSolution& solution) {
+  const VectorXd d = past_held(D, solution.held, i);
+  double most = unbounded;
+  Index spared = -1;
+  for (Index k = 0; k < d.size(); ++k) {
+    if (!changes(D, d, k, i)) continue;
+    const double x = solution.x[k];
+    const bool relieved = d[k] * x < 0;
+    const double room = std::abs(relieved ? x : (d[k] > 0 ? high[k] : low[k]) - x) / std::abs(d[k]);
+    if (room < most) most = room, spared = relieved && !pushes[static_cast<std::size_t>(k)] ? k : -1;
+  }
+  if (spared < 0) return;
+  solution.x += most * d;
+  exchange(solution, spared, i);
+}
+
 std::vector<std::vector<Index>> joined_rows(const MatrixXd& D) {
   constexpr double rounding = 1e-9;
   std::vector<std::vector<Index>> sets;

@@ -34,6 +34,16 @@ VectorXd past_held(const MatrixXd& D, const std::vector<bool>& held, Index i);
 // Is row i of D independent of those held? Of unit diagonal, what they leave of it is above round-off.
 bool independent(const MatrixXd& D, const std::vector<bool>& held, Index i);
 
+// Of a solution with held rows of which i is not independent, another one, with the same w; `pushes`: rows
+// that push, as stops do, and never pull.
+// What i bears goes over to those held, or i is held in place of the first that pushes and would have to
+// pull.
+void give_over(const MatrixXd& D, const std::vector<bool>& pushes, Index i, BoxSolution& solution);
+// i bears until one of those held bears nothing, and is held in its place, if that is none that pushes, and
+// none is at a bound before.
+void take_over(const MatrixXd& D, const VectorXd& low, const VectorXd& high, const std::vector<bool>& pushes,
+               Index i, BoxSolution& solution);
+
 // Sets of rows that D does not join, neither directly nor by others: each has an answer of its own. D:
 // symmetric, its diagonal not negative; entries below 1e-9 of what they could be are rounding.
 std::vector<std::vector<Index>> joined_rows(const MatrixXd& D);

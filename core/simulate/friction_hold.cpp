@@ -12,6 +12,10 @@ namespace {
 constexpr double connected = 1e-9;  // of the largest share
 constexpr double met = 1e-11;       // of a load: what rounding leaves of it
 
+VectorXd bounded(const VectorXd& tau) {
+  return tau.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; });
+}
+
 // Those that `held` is connected with, by turns over the resting and the held ones.
 void collect(const MatrixXd& linked, Index held, std::vector<Index>& all, std::vector<Index>& resting) {
   std::vector<bool> seen(static_cast<std::size_t>(linked.rows()), false);
@@ -32,12 +36,12 @@ void collect(const MatrixXd& linked, Index held, std::vector<Index>& all, std::v
 // polyhedron, so that this ends. What needs no friction counts as held up to far beyond all friction.
 double most(const MatrixXd& A, const VectorXd& l, const VectorXd& tau) {
   constexpr double far = 100;
-  const VectorXd bounded = tau.unaryExpr([](double x) { return std::isfinite(x) ? x : 0.0; }), low = -bounded;
+  const VectorXd most_of_each = bounded(tau), low = -most_of_each;
   const double size = l.lpNorm<Eigen::Infinity>();
   const auto bound = [&](const VectorXd& r) {
-    return (A.transpose() * r).cwiseAbs().dot(bounded) / l.dot(r);
+    return (A.transpose() * r).cwiseAbs().dot(most_of_each) / l.dot(r);
   };
-  double t = tau.allFinite() ? bound(l) : far * bounded.sum() / size;
+  double t = tau.allFinite() ? bound(l) : far * most_of_each.sum() / size;
   for (;;) {
     const auto nearest = solve_box(A.transpose() * A, -t * (A.transpose() * l), low, tau);
     if (!nearest) return t;
@@ -73,7 +77,7 @@ std::vector<FrictionHold> friction_holds(const MatrixXd& c, const VectorXd& lamb
     if (rows == 1 && tau.allFinite())
       hold.capacity = A.row(0).cwiseAbs().dot(tau);
     else
-      hold.capacity = hold.load > 0 ? most(A, l, tau) * hold.load : tau.sum();
+      hold.capacity = hold.load > 0 ? most(A, l, tau) * hold.load : bounded(tau).sum();
     out.push_back(std::move(hold));
   }
   return out;

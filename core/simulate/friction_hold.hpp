@@ -14,7 +14,7 @@ namespace unfurl {
 //
 //     x_i + sum_j c_ji x_j = lambda_i     with |x| <= tau of each.
 //
-// Among the held ones may be stops, whose tau is infinite: they push as much as they must, x >= 0.
+// Among both may be stops, whose tau is infinite: they push as much as they must, x >= 0.
 //
 // Of all that are connected by c that is one condition, lambda = t l with the largest t >= 1 that there is an
 // x for: their capacity is |t l|, largest entry, beside their load |l|.
@@ -23,7 +23,7 @@ struct FrictionHold {
   double load = 0.0, capacity = 0.0;  // in the unit of what has the largest share of the load
 };
 
-// c: resting by held; lambda, tau of the held ones; tau of the resting ones, which are no stops.
+// c: resting by held; lambda, tau of the held ones; tau of the resting ones.
 std::vector<FrictionHold> friction_holds(const MatrixXd& c, const VectorXd& lambda, const VectorXd& tau_held,
                                          const VectorXd& tau_resting);
 

@@ -28,6 +28,7 @@ constexpr double sum_rounding = 1e-12, immovable_rounding = 1e-6;
 constexpr double no_load = 1e-30;
 // Of the forces: where one falls to zero is located to a share of that (one_sided.cpp), either way.
 constexpr double located = 1e-9;
+constexpr double a_little = 1e-6;  // of what friction holds
 
 class Change {
  public:
@@ -109,7 +110,8 @@ class Change {
       if (std::ranges::find(which_, i) != which_.end() || sides_.touches(i, system_, out_.state))
         rows_.push_back(i);
     for (std::size_t i = sides_.first_friction(); i < sides_.first_motor(); ++i) rows_.push_back(i);
-    struck_ = passes_ = std::vector<bool>(rows_.size(), false);
+    struck_ = passes_ = stops_ = std::vector<bool>(rows_.size(), false);
+    for (std::size_t k = 0; k < rows_.size(); ++k) stops_[k] = sides_.is_stop(rows_[k]);
   }
 
   // A state may miss the constraints by what the method drifts from them, `met` does not: what holds has no
@@ -264,7 +266,9 @@ class Change {
       if (sides_.is_friction(i)) low_[r] = -sides_.holding(i);
       high_[r] = sides_.is_friction(i) ? sides_.holding(i) : infinity;
     }
-    const std::vector<bool> still = rests_;
+    still_ = rests_;
+    for (Index r = 0; r < count(); ++r)
+      if (starts(r)) slide(r, sides_.slip(side(r)));
     if (!solve()) return false;
     forget_left(leaving);
     if (!leaving.empty()) let_go(leaving);
@@ -274,7 +278,7 @@ class Change {
     for (Index tries = count(); tries >= 0; --tries) {
       bool back = false;
       for (Index r = 0; r < count(); ++r)
-        back = ((still[static_cast<std::size_t>(r)] || is_no_flight(r)) && come_back(r)) || back;
+        back = ((still_[static_cast<std::size_t>(r)] || is_no_flight(r)) && come_back(r)) || back;
       if (!back) return true;
       if (!solve()) return false;
     }
@@ -306,18 +310,35 @@ class Change {
     }
   }
 
-  // Frictions that hold together let go together: all whose force is at its limit, and they alone.
-  void let_go(std::vector<Index>& leaving) const {
+  // Frictions that hold together let go together: all that would not rest if frictions held a little less,
+  // and they alone. Which forces are at their limits may be one choice of many.
+  void let_go(std::vector<Index>& leaving) {
     if (std::ranges::none_of(leaving, [this](Index r) { return at_limit(r); })) return;
     std::erase_if(leaving, [&](Index r) { return sides_.is_friction(side(r)); });
+    VectorXd low = low_, high = high_;
     for (Index r = 0; r < count(); ++r)
-      if (at_limit(r)) leaving.push_back(r);
+      if (sides_.is_friction(side(r)) && rests_[static_cast<std::size_t>(r)])
+        low[r] *= 1 - a_little, high[r] *= 1 - a_little;
+    const auto solution = solve_box(D_, b_, low, high);
+    if (!solution) return;
+    solution_.x = solution->x;
+    for (Index r = 0; r < count(); ++r)
+      if (at_limit(r) && !solution->held[static_cast<std::size_t>(r)] &&
+          std::abs(solution->w[r]) > zero_acceleration(r))
+        leaving.push_back(r);
   }
 
   // Friction that rests and bears all that it can.
   bool at_limit(Index r) const {
     return sides_.is_friction(side(r)) && rests_[static_cast<std::size_t>(r)] &&
-           std::abs(solution_.x[r]) >= (1 - 1e-6) * sides_.holding(side(r));
+           std::abs(solution_.x[r]) >= (1 - 2 * a_little) * sides_.holding(side(r));
+  }
+
+  // Friction that has begun to slip and has not moved: it does so, unless it is pushed back, beside others
+  // that change at once.
+  bool starts(Index r) const {
+    return rests_[static_cast<std::size_t>(r)] && sides_.is_friction(side(r)) && sides_.slip(side(r)) != 0 &&
+           !crossed(r) && out_.impacts.empty();
   }
 
   void slide(Index r, int sense) {
@@ -386,33 +407,17 @@ class Change {
   void hold_resting() {
     std::vector<Index> order(static_cast<std::size_t>(count()));
     std::iota(order.begin(), order.end(), Index{0});
-    const auto asks = [this](Index r) { return crossed(r) && (at_limit(r) || sides_.is_stop(side(r))); };
-    if (std::ranges::any_of(order, asks))
-      for (const Index r : order)
-        if (at_limit(r)) give_way(r);
     std::stable_partition(order.begin(), order.end(),
                           [&](Index r) { return sides_.is_friction(side(r)) && bears(r); });
     for (const Index r : order) {
       const auto k = static_cast<std::size_t>(r);
       if (!rests_[k] || solution_.held[k] || !wants(r) || solution_.w[r] > zero_acceleration(r)) continue;
-      const bool free = independent(D_, solution_.held, r);
-      if (free) solution_.held[k] = true;
-      if (!free && sides_.is_stop(side(r))) take_over(r);
-    }
-  }
-
-  // Friction that bears all that it can leaves its place to a stop in its way, where none has to pull then.
-  void give_way(Index r) {
-    const auto stop = [&](Index k) { return sides_.is_stop(side(k)) && rests_[static_cast<std::size_t>(k)]; };
-    for (Index k = 0; k < count(); ++k) {
-      std::vector<bool> held = solution_.held;
-      held[static_cast<std::size_t>(r)] = false;
-      if (!stop(k) || !independent(D_, held, k) || solution_.w[k] > zero_acceleration(k)) continue;
-      held[static_cast<std::size_t>(k)] = true;
-      const VectorXd x = solution_.x - solution_.x[r] * past_held(D_, held, r);
-      bool push = !independent(D_, held, r) && x[k] - solution_.x[k] > rounding * std::abs(solution_.x[r]);
-      for (Index i = 0; i < count(); ++i) push = push && (!stop(i) || x[i] >= 0);
-      if (push) return solution_.x = x, void(solution_.held = held);
+      if (independent(D_, solution_.held, r))
+        solution_.held[k] = true;
+      else if (sides_.is_stop(side(r)))
+        take_over(D_, low_, high_, stops_, r, solution_);
+      else
+        give_over(D_, stops_, r, solution_);
     }
   }
 
@@ -439,31 +444,14 @@ class Change {
     if (sides_.any_friction()) share();
   }
 
-  // A stop that holds what friction holds: it takes over until one of those bears nothing.
-  void take_over(Index r) {
-    const VectorXd d = past_held(D_, solution_.held, r);
-    double most = infinity;
-    Index spared = -1;
-    for (Index k = 0; k < count(); ++k) {
-      if (k == r || std::abs(d[k]) * std::sqrt(D_(k, k)) <= 1e-9 * std::sqrt(D_(r, r))) continue;
-      const double x = solution_.x[k];
-      const bool relieved = d[k] * x < 0;
-      const double room = std::abs(relieved ? x : (d[k] > 0 ? high_[k] : low_[k]) - x) / std::abs(d[k]);
-      if (room < most) most = room, spared = relieved && sides_.is_friction(side(k)) ? k : -1;
-    }
-    if (spared < 0) return;
-    solution_.x += most * d;
-    solution_.held[static_cast<std::size_t>(r)] = true;
-    solution_.held[static_cast<std::size_t>(spared)] = false;
-  }
-
-  // By D c = d over what is held, stops among it.
+  // By D c = d over what is held, stops among it; of what rests by that, be it a stop.
   void share() {
     const auto n = static_cast<Index>(sides_.first_motor());
     MatrixXd c = MatrixXd::Zero(n, n);
     for (Index r = 0; r < count(); ++r) {
       const std::size_t i = side(r);
-      if (!sides_.is_friction(i) || sides_.active(i) || sides_.slip(i) != 0) continue;
+      const bool stands = sides_.is_friction(i) ? sides_.slip(i) == 0 : still_[static_cast<std::size_t>(r)];
+      if (sides_.active(i) || !stands || independent(D_, solution_.held, r)) continue;
       const VectorXd d = past_held(D_, solution_.held, r);
       for (Index k = 0; k < count(); ++k)
         if (k != r) c(static_cast<Index>(i), static_cast<Index>(side(k))) = -d[k];
@@ -481,7 +469,7 @@ class Change {
   ModeChange out_;
   std::optional<State> located_;   // with the drift of what is held, where its forces were found
   std::vector<std::size_t> rows_;  // sides that may push: stops that are touched, then friction
-  std::vector<bool> struck_, passes_, rests_, movable_;
+  std::vector<bool> stops_, struck_, passes_, rests_, still_, movable_;
   std::vector<int> slips_;
   MatrixXd D_;
   VectorXd spread_, rate_, b_, rounds_, low_, high_;

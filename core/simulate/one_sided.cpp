@@ -8,15 +8,12 @@
 
 #include "core/constraints/measure_rows.hpp"
 #include "core/forces/spring.hpp"
-#include "core/simulate/friction_hold.hpp"
-#include "core/simulate/push_responses.hpp"
 
 namespace unfurl {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double force_zero = 1e-10;  // of the largest multiplier
-constexpr double handed_over = 1e4;   // of what counts as zero for a motor's torque
+constexpr double handed_over = 1e4;  // of what counts as zero for a motor's torque
 // Of what counts as touching: a distance within that is taken as one that grows, once it has come to zero.
 constexpr double beside_zero = 100;
 // So far behind its length a cable goes taut, of what counts as zero: by more than that is located to, so
@@ -330,69 +327,6 @@ std::vector<std::size_t> OneSided::laws_left(const System& system, const State& 
   return out;
 }
 
-void OneSided::measure_held(const Model& model, const State& state, Probe& probe) {
-  if (!index1_) {
-    followed_.emplace(model.system);
-    index1_ = std::make_unique<Index1>(*followed_);
-  }
-  followed_->follow(state);
-  acceleration_.resize(state.z.size());
-  lambda_ = state.lambda;
-  State with_forces = state;
-  if (index1_->evaluate(state, acceleration_, lambda_)) with_forces.lambda = lambda_;
-  const double zero =
-      std::max(force_zero * with_forces.lambda.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
-  weigh(model, state);
-  const std::set<std::size_t> held = this->held();
-  for (const std::size_t i : held) {
-    const auto row = static_cast<Index>(i);
-    const double push = stops_.push(i, model, held, with_forces);
-    probe.margins[row] = push / zero, probe.forces[row] = std::abs(push);
-    held_force_[row] = push * (measure(i).is_angle() ? row_arm(model.structure, stops_[i].measure) : 1.0);
-  }
-  // What sticks lies before the stops that are held, in its order.
-  auto constraint = static_cast<int>(std::ssize(model.structure.constraints) - std::ssize(held));
-  for (std::size_t i = first_motor(); i-- > first_friction();)
-    if (active_[i])
-      held_force_[static_cast<Index>(i)] =
-          -with_forces.lambda[model.system.constraint_row(--constraint)] * friction(i).row;
-  measure_sticking(zero, probe);
-}
-
-// A gap that its force lets go opens with the cube of time, which a step of second order follows with either
-// sign: it is no contact where no more is passed than what pulls away makes in that time, while the gap has
-// about the rate that comes of it. What swings back within the step is slower by then.
-bool OneSided::leaves(std::size_t i, const Model& model, const State& state, double passed,
-                      double rate) const {
-  const double since = state.t - let_go_[static_cast<Index>(i)];
-  if (!(since > 0)) return false;
-  const System system = model.system.at(state);
-  PushResponses responses(system, state);
-  if (responses.ok()) responses.add(measure(i), sign(i), near(i, state), limit_motion(i, state.t));
-  const VectorXd away = responses.accelerations(model.structure, state).value;
-  return away.size() == 1 && passed < away[0] * since * since && 4 * rate > away[0] * since;
-}
-
-// Of frictions that stick: those that are held, by stops too, and those that rest by them.
-void OneSided::measure_sticking(double zero, Probe& probe) {
-  std::vector<Index> held, resting;
-  VectorXd tau = VectorXd::Constant(held_force_.size(), std::numeric_limits<double>::infinity());
-  for (Index i = 0; i < tau.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (is_friction(k)) tau[i] = holding(k);
-    if ((is_stop(k) || is_friction(k)) && active_[k]) held.push_back(i);
-    if (is_friction(k) && !active_[k] && slip(k) == 0 && shares_.rows() > 0) resting.push_back(i);
-  }
-  const MatrixXd shares = resting.empty() ? MatrixXd(0, std::ssize(held)) : MatrixXd(shares_(resting, held));
-  for (const FrictionHold& hold : friction_holds(shares, held_force_(held), tau(held), tau(resting)))
-    for (const Index k : hold.held) {
-      const Index i = held[static_cast<std::size_t>(k)];
-      if (!is_friction(static_cast<std::size_t>(i))) continue;
-      const double arm = friction(static_cast<std::size_t>(i)).row;
-      probe.margins[i] = (hold.capacity - hold.load) / std::max(zero * arm, force_zero * hold.capacity);
-    }
-}
-
 void OneSided::measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
                                 Probe& probe) {
   const Friction& f = friction(i);
@@ -413,7 +347,6 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
   bool holds = false;
   for (std::size_t k = 0; k < active_.size(); ++k)
     holds = holds || (active_[k] && (is_stop(k) || is_friction(k)));
-  if (forces && holds) measure_held(model, state, probe);
   VectorXd q(system.coordinates()), v(q.size());
   system.expand(state.z, q);
   system.expand_rate(state.w, v);
@@ -434,6 +367,7 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
     if (probe.margins[i] < -1 && leaves(k, model, state, -gap, rate)) probe.margins[i] = -0.5;
     rate /= touching(k);
   }
+  if (forces && holds) measure_held(model, state, probe);
 }
 
 std::shared_ptr<const Model> OneSided::lock_held(const Model& base, double t) {

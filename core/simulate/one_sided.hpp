@@ -103,7 +103,8 @@ class OneSided {
   bool comes_to_zero(std::size_t i, const System& system, const State& state) const;
   void stand(std::size_t i) { active_[i] = false, frictions_[i - first_friction()].slip = 0; }
   void stick(std::size_t i, const System& system, const State& state);
-  // Of frictions that stand by stops and frictions that hold: c_ji of friction_hold.hpp, sides by sides.
+  // Of frictions that stand and stops that touch by those that hold: c_ji of friction_hold.hpp, sides by
+  // sides.
   void set_shares(MatrixXd c) { shares_ = std::move(c); }
   // What counts as zero, of what a stop or friction acts along and of its rates: what comes to a zero length,
   // or angle, in a step. Of accelerations nothing does but what rounding leaves of what they are the sum of.
@@ -185,6 +186,7 @@ class OneSided {
   bool laws() const { return !cables_.empty() || !motors_.empty(); }
   void tell(std::size_t i, std::size_t pad, Event& out) const;
   std::set<std::size_t> held() const;
+  void follow(const Model& model, const State& state);
   void measure_held(const Model& model, const State& state, Probe& probe);
   void set_laws(Structure& structure) const;
   MotorRooms rooms(const Drive& motor, const VectorXd& q, const VectorXd& v, const State& state);

@@ -142,6 +142,40 @@ TEST_CASE("rows of one freedom that contradict each other far below their bounds
     }
 }
 
+// Whatever is held after that, held rows are independent, nothing else bears what it can give over, stops
+// push, and no acceleration has changed.
+TEST_CASE("what is not held gives over what it bears and what is held still only pushes") {
+  std::mt19937 random(37);
+  int over = 0, instead = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const Problem p = drawn(random, 2 + k % 5, 1 + (k / 5) % 4);
+    auto solution = solve_box(p.D, p.b, p.low, p.high);
+    if (!solution) continue;
+    const double size = p.b.lpNorm<Eigen::Infinity>(), most = 1 + solution->x.lpNorm<Eigen::Infinity>();
+    std::vector<bool> pushes;
+    for (const double high : p.high) pushes.push_back(!std::isfinite(high));
+    for (Index i = 0; i < p.b.size(); ++i) {
+      const auto one = static_cast<std::size_t>(i);
+      if (pushes[one] || solution->held[one] || std::abs(solution->w[i]) > 1e-9 * size) continue;
+      if (independent(p.D, solution->held, i)) continue;
+      INFO("problem " << k << ", row " << i);
+      give_over(p.D, pushes, i, *solution);
+      ++(solution->held[one] ? instead : over);
+      CHECK((solution->held[one] || std::abs(solution->x[i]) <= 1e-12 * most));
+      CHECK((p.D * solution->x + p.b - solution->w).lpNorm<Eigen::Infinity>() <= 1e-7 * size);
+      std::vector<bool> before(solution->held.size(), false);
+      for (std::size_t j = 0; j < before.size(); ++j) {
+        if (pushes[j]) CHECK(solution->x[static_cast<Index>(j)] >= -1e-9 * most);
+        if (!solution->held[j]) continue;
+        CHECK(independent(p.D, before, static_cast<Index>(j)));
+        before[j] = true;
+      }
+    }
+  }
+  CHECK(over > 50);
+  CHECK(instead > 5);
+}
+
 // One body between two walls meets the one as fast as it leaves the other; its rates are of a motion that is
 // 1e4 times as fast.
 TEST_CASE("walls on either side of what hardly moves agree to the rounding of its rates") {

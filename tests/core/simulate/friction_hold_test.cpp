@@ -133,6 +133,23 @@ TEST_CASE("what frictions bear together is what duality says") {
   CHECK(holds[1].capacity == 2 + 2 * 8);
 }
 
+// A body of friction 2 N, pushed with 1.5 N onto another one of friction 3 N that a load of 1.3 N pushes on:
+// t (1.5, 1.3) = (x_0 - N, x_1 + N), N >= 0, hence 2.8 t <= 5. Without a load: what friction bears.
+TEST_CASE("frictions bear through a stop that rests by them what they could not alone") {
+  const double inf = std::numeric_limits<double>::infinity();
+  const MatrixXd c = (MatrixXd(1, 2) << 1, -1).finished();
+  const Eigen::Vector2d tau(2, 3);
+  const auto load = [&](double first, double second) {
+    const auto holds = friction_holds(c, Eigen::Vector2d(first, second), tau, VectorXd::Constant(1, inf));
+    REQUIRE(holds.size() == 1);
+    return holds[0];
+  };
+  CHECK(load(1.5, 1.3).capacity / load(1.5, 1.3).load == Approx(5 / 2.8));
+  CHECK(load(-1.5, -1.3).capacity / load(-1.5, -1.3).load == Approx(2 / 1.5));  // no stop can pull
+  CHECK(load(0, 0).capacity == Approx(5));
+  CHECK(load(0, 0).load == 0);
+}
+
 TEST_CASE("linkages with a friction in every hinge move when all of them together give way") {
   for (const Chain* chain : {&four_bar, &five_bar})
     for (const char* method : {"dvm", "rk4"})
