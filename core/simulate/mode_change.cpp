@@ -124,7 +124,8 @@ class Change {
     std::vector<Index> rows;
     const auto held = [&](Index r) { return !which_.empty() && sides_.active(side(r)); };
     const auto keep = [&](Index r) {
-      if (!movable(r) || !(held(r) || at_rest(r, u[r])) || !independent(D_, still, r)) return;
+      const bool rests = held(r) || at_rest(r, u[r]) || at_rest(r, u_met[r]);
+      if (!movable(r) || !rests || !independent(D_, still, r)) return;
       still[static_cast<std::size_t>(r)] = true;
       rows.push_back(r);
     };

@@ -51,7 +51,10 @@ const char* in_words(const Motor& motor) {
 }  // namespace
 
 OneSided::OneSided(const Structure& structure, const SolverOptions& options)
-    : stops_(structure), step_(options.step), eliminate_linear_(options.eliminate_linear) {
+    : stops_(structure),
+      step_(options.step),
+      eliminate_linear_(options.eliminate_linear),
+      rates_drift_(options.method != "dvm" && options.method != "rk4_projected") {
   const std::vector<int> followed = followed_angles(structure).of_force;
   for (std::size_t i = 0; i < structure.forces.size(); ++i) {
     const Force& f = structure.forces[i];
@@ -347,14 +350,21 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
   bool holds = false;
   for (std::size_t k = 0; k < active_.size(); ++k)
     holds = holds || (active_[k] && (is_stop(k) || is_friction(k)));
-  VectorXd q(system.coordinates()), v(q.size());
+  VectorXd q(system.coordinates()), v(q.size()), v_met;
   system.expand(state.z, q);
   system.expand_rate(state.w, v);
+  // Friction turns round where a drive does, not where the method's rates do.
+  if (forces && rates_drift_ && any_friction()) {
+    follow(model, state);
+    VectorXd w = state.w;
+    if (index1_->evaluate_on(state.t, state.z, w, acceleration_, lambda_, state.tension))
+      system.expand_rate(w, v_met = v);
+  }
   for (Index i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     if ((i < stops || is_friction(k)) && active_[k]) continue;
     if (is_friction(k)) {
-      measure_friction(q, v, state, k, probe);
+      measure_friction(q, v_met.size() > 0 ? v_met : v, state, k, probe);
       continue;
     }
     if (i >= stops) {

@@ -211,7 +211,7 @@ class OneSided {
   MatrixXd shares_;
   VectorXd held_force_;  // of stops and frictions that hold, at the state that is measured
   double step_;
-  bool eliminate_linear_;
+  bool eliminate_linear_, rates_drift_;
   VectorXd gradient_, acceleration_, lambda_;
   std::optional<System> followed_;       // the present model's, near a state's angles
   std::unique_ptr<Index1> index1_;       // of that
