@@ -324,6 +324,21 @@ TEST_CASE("a latch without a deployed pose is refused, and one that is never use
   CHECK_THAT(unused->structure.notes.front(), Catch::Contains("does nothing without solver.at_deployed"));
 }
 
+// A ring's latches hold its hinges, each of which bears a load.
+TEST_CASE("the latches of a ring are named by the hinges that they hold") {
+  const Scene scene = read_scene_file(find_scene("hoop6"));
+  const auto latched = latched_model(*build_model(scene), true);
+  const Structure& structure = latched->structure;
+  std::vector<std::string> expected, names;
+  for (const Load& load : structure.loads)
+    expected.push_back("latch of " + structure.nodes[static_cast<std::size_t>(load.node)].name);
+  for (const Constraint& c : structure.constraints)
+    if (c.name.starts_with("latch of ")) names.push_back(c.name);
+  std::ranges::sort(expected), std::ranges::sort(names);
+  CHECK(expected.size() == 12);
+  CHECK(names == expected);
+}
+
 TEST_CASE("a latch that gives is refused where the deployed pose is singular") {
   const Scene scene = read_scene_file(
       find_scene("hoop6"), {"forces[0]={kind=\"latch\", stiffness=40000}", "solver.at_deployed=latch",

