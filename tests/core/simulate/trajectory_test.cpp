@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/simulate/trajectory.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
 
+#include "core/simulate/measured_event.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -35,4 +43,135 @@ end_time = 0.5
     CHECK((moved - rows.time(i) * grows).cwiseAbs().maxCoeff() <= 1e-15 * 4);
     CHECK(shown.trajectory.velocities(i) == rows.velocities(i));
   }
+}
+
+// Three models of one flight, as where a latch closes and a stop is met: the second begins at a time that
+// stands twice.
+TEST_CASE("every state of a trajectory belongs to the model that it came from") {
+  const std::string flight = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0.3, -0.2, 0.7], velocity = [2, -3, 0.5], mass = 1.5}]
+)";
+  std::vector<std::shared_ptr<const Model>> m;
+  for (int k = 0; k < 5; ++k) m.push_back(testing::model_of(flight));
+  const Vec3 start(0.3, -0.2, 0.7), rate(2, -3, 0.5);
+  Trajectory all(m[0]);
+  const auto add = [&](double t) {
+    State s;
+    s.t = t, s.z = start + t * rate, s.w = rate;
+    all.append(s, {});
+  };
+  add(0.1), add(0.2), add(0.5);
+  all.change_model(m[1]);
+  add(0.5), add(0.9);
+  all.change_model(m[2]);
+  add(1.7);
+  const auto models = [&m](const Trajectory& trajectory) {
+    std::vector<int> out;
+    for (std::size_t i = 0; i < trajectory.size(); ++i)
+      for (int k = 0; k < 5; ++k)
+        if (&trajectory.model(i) == m[static_cast<std::size_t>(k)].get()) out.push_back(k);
+    return out;
+  };
+  CHECK(models(all) == std::vector{0, 0, 0, 1, 1, 2});
+  for (const auto& [t, before] : {std::pair(-1.0, 0),
+                                  {0.1, 0},
+                                  {0.19, 0},
+                                  {0.2, 1},
+                                  {0.49, 1},
+                                  {0.5, 3},
+                                  {0.6, 3},
+                                  {0.9, 4},
+                                  {1.69, 4},
+                                  {1.7, 5},
+                                  {2.0, 5}}) {
+    INFO(t << " s");
+    CHECK(all.state_before(t) == static_cast<std::size_t>(before));
+    // The flight is straight; nothing is known outside of it.
+    const Vec3 there = start + std::clamp(t, 0.1, 1.7) * rate;
+    CHECK((all.positions_at(t) - there).norm() <= 1e-14);
+    CHECK((all.velocities_at(t) - rate).norm() <= 1e-14);
+  }
+  for (std::size_t first = 0; first < 6; ++first)
+    for (std::size_t last = first + 1; last <= 6; ++last) {
+      const Trajectory part = all.part(first, last, {});
+      const std::vector<int> whole = models(all), own = models(part);
+      INFO(first << " to " << last);
+      REQUIRE(part.size() == last - first);
+      CHECK(std::equal(own.begin(), own.end(), whole.begin() + static_cast<std::ptrdiff_t>(first)));
+      CHECK(part.start_time() == all.time(first));
+      CHECK(part.end_time() == all.time(last - 1));
+    }
+  // What rods give by goes with the states; models whose states have been taken back are gone.
+  const Vec3 more(0.01, 0.03, -0.02);
+  for (std::size_t i = 0; i < 6; ++i) all.add_stretch(i, static_cast<double>(i) * more);
+  CHECK((all.positions_at(1.3) - (start + 1.3 * rate + 4.5 * more)).norm() <= 1e-14);
+  all.pop_back(), all.pop_back();
+  CHECK(all.stretch(4) == nullptr);
+  REQUIRE(all.stretch(3) != nullptr);
+  CHECK(*all.stretch(3) == 3 * more);
+  all.change_model(m[3]);
+  add(0.8);
+  CHECK(models(all) == std::vector{0, 0, 0, 1, 3});
+  all.pop_back(), all.pop_back();
+  all.change_model(m[4]);
+  add(0.6);
+  CHECK(models(all) == std::vector{0, 0, 0, 4});
+  CHECK(&all.last_model() == m[4].get());
+  CHECK(&all.model() == m[0].get());
+}
+
+TEST_CASE("how far a run has come is told as a share of its time") {
+  const Scene scene = read_scene_text(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], velocity = [1, 0, 0], mass = 1}]
+[solver]
+step = 0.5
+end_time = 2
+)",
+                                      "s.toml");
+  const auto told = [&](std::chrono::milliseconds pause, int steps) {
+    std::vector<double> fractions;
+    SimulationHooks hooks{[&](double fraction) { fractions.push_back(fraction); },
+                          [&] {
+                            std::this_thread::sleep_for(pause);
+                            return steps-- == 0;
+                          }};
+    simulate(build_model(scene), scene.solver, hooks);
+    return fractions;
+  };
+  using std::chrono_literals::operator""ms;
+  CHECK(told(55ms, -1) == std::vector{0.0, 0.25, 0.5, 0.75, 1.0});
+  CHECK(told(55ms, 2) == std::vector{0.0, 0.25, 0.5});  // stopped: it never is at its end
+  const std::vector<double> quick = told(0ms, -1);      // 20 times a second at most, and at the end
+  CHECK(quick.front() == 0.0);
+  CHECK(quick.back() == 1.0);
+}
+
+// However its way to zero bends: 1 - u^7 and what it is the other way round, on which a secant that keeps one
+// end creeps; u the share of the way.
+TEST_CASE("the zero of what is left is found in few steps from both sides") {
+  for (const double zero : {0.3, 0.6, 0.97})
+    for (const double bend : {7.0, 1.0 / 7}) {
+      const double h = 0.3;
+      int solved = 0;
+      const auto left = [&](const State& s) { return 1 - std::pow((s.t - 2) / (zero * h), bend); };
+      const auto solve = [&](double length, State& s) {
+        ++solved;
+        s.t = 2 + length;
+        return length <= h;
+      };
+      State from;
+      from.t = 2;
+      INFO(zero << ", " << bend);
+      const auto found = step_to_zero(from, h, left, solve);
+      REQUIRE(found);
+      // Times are rounded to 4e-16, a share of 0.009 s; the flat end of the slow one is that of its bend.
+      CHECK(found->t - 2 == Approx(zero * h).epsilon(0).margin(2e-15));
+      CHECK(solved <= 25);
+      CHECK(!step_to_zero(from, 0.99 * zero * h, left, solve));
+      CHECK(!step_to_zero(from, 1.01 * h, left, solve));
+    }
 }
