@@ -22,9 +22,8 @@ namespace {
 // At most about 20 times a second, and at the end.
 class Progress {
  public:
-  Progress(const SimulationHooks& hooks, double start, double end)
-      : hooks_(hooks), start_(start), end_(end) {}
-  void at(double t) { report(end_ > start_ ? (t - start_) / (end_ - start_) : 1.0); }
+  Progress(const SimulationHooks& hooks, double end) : hooks_(hooks), end_(end) {}
+  void at(double t) { report(t / end_); }
   void report(double fraction) {
     if (!hooks_.progress) return;
     const auto now = std::chrono::steady_clock::now();
@@ -35,7 +34,7 @@ class Progress {
 
  private:
   const SimulationHooks& hooks_;
-  double start_, end_;
+  double end_;
   std::chrono::steady_clock::time_point last_{};
 };
 
@@ -127,7 +126,7 @@ Simulation simulate_in_parts(std::shared_ptr<const Model> model, const SolverOpt
   const InitialState start = initial_state(model->structure, model->system);
   const bool stretches = model->structure.quasi_static;
   double begin = thread_cpu_seconds();
-  Progress progress(hooks, start.state.t, options.end_time);
+  Progress progress(hooks, options.end_time);
   Stepper stepper =
       parts.archived ? Stepper(model, options, *parts.archived) : Stepper(model, options, start.state);
   while (stepper.time() < options.end_time) {

@@ -9,11 +9,8 @@ Trajectory::Trajectory(std::shared_ptr<const Model> model, const SolverOptions& 
     : models_{{0, std::move(model)}}, dense_(std::make_shared<DenseOutput>(options)) {}
 
 void Trajectory::change_model(std::shared_ptr<const Model> model) {
-  while (models_.size() > 1 && models_.back().first > size()) models_.pop_back();  // their states are gone
-  if (models_.size() > 1 && models_.back().first == size())
-    models_.back().model = std::move(model);
-  else
-    models_.push_back({size(), std::move(model)});
+  while (models_.size() > 1 && models_.back().first >= size()) models_.pop_back();  // without states
+  models_.push_back({size(), std::move(model)});
 }
 
 const Trajectory::Part& Trajectory::part_of(std::size_t i) const {
@@ -61,7 +58,7 @@ VectorXd Trajectory::node_velocities(std::size_t i) const {
 }
 
 void Trajectory::add_stretch(std::size_t i, VectorXd displacement) {
-  if (stretch_.size() < size()) stretch_.resize(size(), VectorXd::Zero(displacement.size()));
+  stretch_.resize(size(), VectorXd::Zero(displacement.size()));
   stretch_[i] = std::move(displacement);
 }
 

@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/scene/library.hpp"
 #include "core/simulate/measured_event.hpp"
+#include "core/simulate/parts.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -100,6 +102,7 @@ nodes = [{name = "A", position = [0.3, -0.2, 0.7], velocity = [2, -3, 0.5], mass
       INFO(first << " to " << last);
       REQUIRE(part.size() == last - first);
       CHECK(std::equal(own.begin(), own.end(), whole.begin() + static_cast<std::ptrdiff_t>(first)));
+      CHECK(&part.model() == m[0].get());
       CHECK(part.start_time() == all.time(first));
       CHECK(part.end_time() == all.time(last - 1));
     }
@@ -118,20 +121,24 @@ nodes = [{name = "A", position = [0.3, -0.2, 0.7], velocity = [2, -3, 0.5], mass
   all.change_model(m[4]);
   add(0.6);
   CHECK(models(all) == std::vector{0, 0, 0, 4});
+  all.change_model(m[0]);  // what was held is let go
+  add(1.2);
+  CHECK(models(all.part(2, 5, {})) == std::vector{0, 4, 0});
+  all.change_model(m[4]);
   CHECK(&all.last_model() == m[4].get());
   CHECK(&all.model() == m[0].get());
 }
 
 TEST_CASE("how far a run has come is told as a share of its time") {
-  const Scene scene = read_scene_text(R"(
+  const std::string scene_text = R"(
 [structure]
 kind = "custom"
 nodes = [{name = "A", position = [0, 0, 0], velocity = [1, 0, 0], mass = 1}]
 [solver]
 step = 0.5
 end_time = 2
-)",
-                                      "s.toml");
+)";
+  const Scene scene = read_scene_text(scene_text, "s.toml");
   const auto told = [&](std::chrono::milliseconds pause, int steps) {
     std::vector<double> fractions;
     SimulationHooks hooks{[&](double fraction) { fractions.push_back(fraction); },
@@ -145,9 +152,50 @@ end_time = 2
   using std::chrono_literals::operator""ms;
   CHECK(told(55ms, -1) == std::vector{0.0, 0.25, 0.5, 0.75, 1.0});
   CHECK(told(55ms, 2) == std::vector{0.0, 0.25, 0.5});  // stopped: it never is at its end
-  const std::vector<double> quick = told(0ms, -1);      // 20 times a second at most, and at the end
+  const Scene arrives = read_scene_text(
+      scene_text + "[deployment]\nmeasure = 'coordinate A along 1 0 0'\ndeployed = 1.2\n", "s.toml");
+  double last = 0;
+  simulate(build_model(arrives), arrives.solver, {[&](double fraction) { last = fraction; }, {}});
+  CHECK(last == 1.0);                               // deployed: it is done
+  const std::vector<double> quick = told(0ms, -1);  // 20 times a second at most, and at the end
   CHECK(quick.front() == 0.0);
   CHECK(quick.back() == 1.0);
+}
+
+// What is done with its parts is no time of the run.
+TEST_CASE("the processor time of a run is its own") {
+  const Scene scene = read_scene_file(find_scene("pendulum"), {"solver.step=0.001", "solver.end_time=0.5"});
+  std::vector<double> times;
+  Parts parts{.states = 100, .around = 7};
+  double elsewhere = 0;
+  parts.take = [&](const Stepper::Window& window, Stepper&) {
+    const double begin = thread_cpu_seconds();
+    times.push_back(window.run.cpu_s);
+    while (thread_cpu_seconds() < begin + 0.03) continue;
+    elsewhere += thread_cpu_seconds() - begin;
+  };
+  const auto model = build_model(scene);
+  std::size_t first = 0;
+  const double begin = thread_cpu_seconds();
+  const Simulation run = simulate_in_parts(model, scene.solver, {}, parts, first);
+  const double all = thread_cpu_seconds() - begin;
+  REQUIRE(times.size() >= 3);
+  times.push_back(run.cpu_s);
+  CHECK(times.front() > 0);
+  CHECK(std::ranges::is_sorted(times));
+  CHECK(run.cpu_s <= all - elsewhere);
+  CHECK(run.cpu_s >= 0.5 * (all - elsewhere));  // warnings of the start are not of it
+}
+
+TEST_CASE("a run says whether all of a structure or a sector of it was solved") {
+  const auto solved = [](const char* model) {
+    const Scene scene = read_scene_file(find_scene("hoop6"),
+                                        {std::string("structure.model=") + model, "solver.end_time=0.1"});
+    const SolvedAs as = solved_as(simulate(build_model(scene), scene.solver));
+    return as.name + ": " + as.why;
+  };
+  CHECK(solved("sector") == "sector: structure.model = \"sector\"");
+  CHECK(solved("joints") == "full: solver.model = \"full\"");
 }
 
 // However its way to zero bends: 1 - u^7 and what it is the other way round, on which a secant that keeps one
