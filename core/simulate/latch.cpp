@@ -138,7 +138,7 @@ Handover hand_over(const Model& from, const State& state, const Model& to) {
   s.angles = state.angles;
   // A sum that is latched counts the deployment's angles (which come first), behind the others.
   const Index counted = state.angles.size(), own = to.structure.deployment.first_angles().size();
-  if (own > 0 && own <= counted && to.system.followed_angles() == counted + own) {
+  if (own <= counted && to.system.followed_angles() == counted + own) {
     s.angles.conservativeResize(counted + own);
     s.angles.tail(own) = state.angles.head(own);
   }
