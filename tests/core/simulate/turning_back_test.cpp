@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/simulate/initial_state.hpp"
 #include "core/simulate/turning_back.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -377,6 +378,62 @@ end_time = 2
       CHECK(run.message.find("smaller solver.step") == std::string::npos);
       CHECK(run_scene(text, {there, step, "solver.end_time=0.9"}).status == RunStatus::completed);
     }
+}
+
+// Where a step has failed: what its next two steps at these rates would lead to. N is 1 m from the axis of
+// one angle, B 0.8 m from A, the rods of another angle enclose 150 degrees.
+TEST_CASE("what ends within two steps is named as what ends the run") {
+  const std::string text = R"toml(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0.4, -0.7, 0.2], fixed = true},
+         {name = "Q", position = [2.4, -0.7, 0.7], fixed = true},
+         {name = "N", position = [1.4, -0.7, 0.5], mass = 1},
+         {name = "A", position = [0, 0, 0], mass = 1},
+         {name = "B", position = [0, 0.8, 0], mass = 1},
+         {name = "C", position = [0, "=2*cos(5*pi/6)", "=2*sin(5*pi/6)"], mass = 1}]
+)toml";
+  const std::string
+      axis = R"(constraints[0]={kind="angle",name="k",nodes=["N","O","Q"],axis=[0,0,1]})",
+      length = R"(constraints[0]={kind="length",name="k",nodes=["A","B"]})",
+      angle = R"(constraints[0]={kind="angle",name="k",nodes=["B","A","C"]})",
+      sum =
+          R"(constraints[0]={kind="combination",name="k",terms=["1 length A B","0.3 coordinate C along 0 0 1"]})",
+      spring = R"(forces[0]={kind="torsion_spring",name="k",nodes=["B","A","C"],stiffness=3})";
+  const Vec3 turns(0, -std::sin(5 * pi / 6), std::cos(5 * pi / 6));  // of C about A, at 2 m
+  struct Case {
+    const std::string& entry;
+    std::size_t node;
+    Vec3 rate;
+    double within;  // [s]: two steps of half of it; 0: never
+    std::string words;
+  };
+  const std::string falls = "a length of k falls to 0", onto = "O-N comes to lie along the axis of k",
+                    through = "the rods of k pass through one line",
+                    in_line = "the rods of k come to lie in line";
+  for (const Case& c : {Case{axis, 2, {-1, 0, 0}, 0.9, onto},  // to a tenth of its distance
+                        Case{axis, 2, {-2, 0.15, 7}, (4 - std::sqrt(16 - 4 * 4.0225 * 0.99)) / 8.045, onto},
+                        Case{axis, 2, {-1, 0.3, 0}, 0, onto}, Case{axis, 2, {1, 0, 0}, 0, onto},
+                        Case{length, 4, {0, -0.4, 3}, 2, falls}, Case{length, 4, {0, 0.4, 0}, 0, falls},
+                        Case{length, 3, {0, 0.4, 0}, 2, falls}, Case{sum, 4, {0, -0.4, 0}, 2, falls},
+                        Case{angle, 5, 0.4 * turns, pi / 6 / 0.2, through},
+                        Case{angle, 5, -0.4 * turns, 5 * pi / 6 / 0.2, through},
+                        Case{spring, 5, 0.4 * turns, pi / 6 / 0.2, in_line},
+                        Case{spring, 5, -0.4 * turns, 5 * pi / 6 / 0.2, in_line}}) {
+    const auto model = testing::model_of(text, {c.entry});
+    State state = initial_state(model->structure, model->system).state;
+    VectorXd v = VectorXd::Zero(model->system.coordinates());
+    v.segment<3>(3 * static_cast<Index>(c.node)) = c.rate;
+    state.w = model->system.reduce_rate(v);
+    const auto told = [&](double h) { return at_its_end(model->structure, model->system, state, h); };
+    INFO(c.entry << " " << c.rate.transpose());
+    if (c.within == 0) {
+      for (const double h : {0.1, 0.4, 1.0, 9.0}) CHECK(told(h).empty());
+      continue;
+    }
+    CHECK(told(0.49 * c.within).empty());
+    for (const double share : {0.51, 0.8, 1.1, 3.0}) CHECK(told(share * c.within).starts_with(c.words));
+  }
 }
 
 // What presses a hinge without an axis onto a stop in its straight pose holds it there, whatever the step.
