@@ -313,8 +313,8 @@ Vibration vibration_of(const Model& model, const State& pose, const VectorXd& kn
   VectorXd v(model.system.coordinates());
   for (std::size_t k = 0; k < solved.squares.size(); ++k) {
     VibrationMode mode;
-    const std::complex<double> rate = std::sqrt(-solved.squares[k]);  // x ~ exp(rate t)
-    mode.growth = std::abs(rate.real());
+    const std::complex<double> rate = std::sqrt(-solved.squares[k]);  // x ~ exp(rate t); not below 0
+    mode.growth = rate.real();
     mode.frequency = std::abs(rate.imag()) / (2 * pi);
     mode.mechanism = static_cast<Index>(k) < solved.mechanism;
     model.system.expand_rate(solved.vectors.col(static_cast<Index>(k)), v);

@@ -165,4 +165,56 @@ TEST_CASE("rods that pass through each other within a step are seen to") {
     }
 }
 
+// Three fat rods side by side, the second nearer to the third than to the first, in whatever order.
+TEST_CASE("of fat rods the nearest pair is found whichever lie before it") {
+  for (const double sign : {1.0, -1.0})
+    for (const double third : {1.9, 2.1}) {
+      CustomSpec spec;
+      const double x[] = {0.0, 1.0, third};
+      for (int r = 0; r < 3; ++r) {
+        const std::string name = std::string("R") + std::to_string(r);
+        spec.nodes.push_back({name + "a", {sign * x[r], 0, 0}, Vec3::Zero(), 1.0, false});
+        spec.nodes.push_back({name + "b", {sign * x[r], 2, 0}, Vec3::Zero(), 1.0, false});
+        spec.rods.push_back({name, {name + "a", name + "b"}, 1.0});
+      }
+      Structure s = build_custom(spec);
+      const double radius[] = {0.25, 0.3, 0.35};
+      for (std::size_t r = 0; r < 3; ++r) s.rods[r].radius = radius[r];
+      const Simulation run = simulate(make_model(s), dvm_options(2, 0.1, 0.1));
+      const auto c = least_clearance(run.trajectory, run.trajectory.size());
+      REQUIRE(c);
+      INFO(sign << " " << third);
+      const bool first = third - 1 - 0.65 > 1 - 0.55;
+      CHECK(c->distance == Approx(first ? 0.45 : third - 1.65).epsilon(1e-12));
+      CHECK((c->rod_a == (first ? 0 : 1) && c->rod_b == (first ? 1 : 2)));
+    }
+}
+
+// A rod of 2 m that turns at 4 rad/s about its middle, which goes away from a pole at 0.2 m/s: it comes near
+// once in every half turn, never again as near as at first.
+TEST_CASE("the least clearance is that of the time at which it was seen") {
+  const double away = 1.4, speed = 0.2, turns = 4, begin = -0.71;
+  CustomSpec spec;
+  for (const double end : {1.0, -1.0}) {
+    const Vec3 along = end * Vec3(std::cos(begin), std::sin(begin), 0), across(-along.y(), along.x(), 0);
+    spec.nodes.push_back({end > 0 ? "A" : "B", along, turns * across - Vec3(speed, 0, 0), 1.0, false});
+  }
+  spec.nodes.push_back({"P", {away, 0, -1}, Vec3::Zero(), 0.0, true});
+  spec.nodes.push_back({"Q", {away, 0, 1}, Vec3::Zero(), 0.0, true});
+  spec.rods = {{"AB", {"A", "B"}, 0.0}, {"PQ", {"P", "Q"}, 0.0}};
+  const Simulation run = simulate(make_model(build_custom(spec)), dvm_options(4, 0.06, 4.0));
+  // The tip is nearest where it is farthest on along x, but for its way across; by 1e6 times.
+  double least = 1e9, when = 0;
+  for (int k = 0; k <= 1000000; ++k) {
+    const double t = 0.4 * k / 1e6, angle = begin + turns * t;
+    const double x = away + speed * t, along = x * std::cos(angle), across = x * std::sin(angle);
+    const double distance = std::hypot(std::max(0.0, along - 1), across);
+    if (distance < least) least = distance, when = t;
+  }
+  const auto c = least_clearance(run.trajectory, run.trajectory.size());
+  REQUIRE(c);
+  CHECK(c->axes == Approx(least).epsilon(0).margin(1e-8));  // order 8 at 0.24 rad a step
+  CHECK(c->t == Approx(when).epsilon(0).margin(1e-4));
+}
+
 }  // namespace clearance_test

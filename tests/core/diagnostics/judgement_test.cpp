@@ -245,6 +245,76 @@ TEST_CASE("energies are turned over by the largest of their spans, or by motion"
   CHECK(turned.value() == 13);
 }
 
+// What was not looked at turns over nothing, and hides nothing of the rest.
+TEST_CASE("energies of an interrupted diagnosis are those of the states that were looked at") {
+  Judged j = six_states();
+  j.d.left_open = 2;
+  for (Series& column : j.d.columns)
+    if (column.unit == "J") column.values[4] = column.values[5] = nan_value;
+  CHECK(energy_turned_over(j.d) == 60);  // from -7 J to -67 J
+  j.d.left_open = 4;
+  CHECK(energy_turned_over(j.d) == 33);
+}
+
+TEST_CASE("a run whose judgement is interrupted has not failed for that") {
+  Judged j = six_states();
+  const RunStatus status = j.run.status;
+  int asked = 0;
+  j.d = judge(j.run, [&] { return ++asked > 3; });
+  CHECK(j.d.left_open == 3);
+  CHECK(j.run.status == status);
+  CHECK(j.run.message.empty());
+  CHECK(j.run.trajectory.size() == 6);
+  CHECK(j.d.t.size() == 6);
+}
+
+// Of books without any energy, off by what rounding can have done until the end, or by more.
+TEST_CASE("what rounding can do to a balance grows until the end of a run") {
+  Judged j = six_states();
+  for (Series& column : j.d.columns)
+    if (column.unit == "J") column.values.assign(6, 0.0);
+  const std::vector<double> noise = energy_round_off(j.run);
+  REQUIRE(noise.front() < 0.9 * noise.back());
+  j.set("energy_balance_J", {0, 0, 0, 0, 0, 0.95 * noise.back()});
+  REQUIRE(warnings(j).size() == 1);
+  CHECK(warnings(j)[0].find("rounding alone") != std::string::npos);
+  j.set("energy_balance_J", {0, 0, 0, 0, 0, 1.05 * noise.back()});
+  REQUIRE(warnings(j).size() == 1);
+  CHECK(warnings(j)[0].find("take a smaller solver.step") != std::string::npos);
+}
+
+TEST_CASE("states that are shown without what rods give are told once, and by themselves") {
+  Judged j{testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "P", position = [0.6, 0, -0.8], mass = 1.3}]
+rods = [{nodes = ["O", "P"], mass = 1, area = 1e-4, youngs_modulus = 7e10}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+step = 0.01
+end_time = 0.05
+)"),
+           {}};
+  j.d = diagnose(j.run);
+  REQUIRE(j.d.t.size() == 6);
+  CHECK(first_unstretched(j.run, j.d) == 6);
+  for (std::size_t i = 0; i < 6; ++i)
+    j.run.trajectory.add_stretch(i, VectorXd::Constant(6, i < 3 ? 1e-6 : 0.0));
+  CHECK(first_unstretched(j.run, j.d) == 3);
+  REQUIRE(warnings(j).size() == 1);
+  const std::string told = warnings(j)[0];
+  CHECK(told.starts_with("near t = 0.03 s"));
+  j.set("energy_balance_J", {0, 0, 0, 0, 0, -3});
+  j.set("constraint_relative_max", {0, 0, 0, 0, 0, 0.0025});
+  REQUIRE(warnings(j).size() == 3);
+  CHECK(warnings(j)[0].starts_with("the energy balance is off by 3 J"));
+  CHECK(warnings(j)[1].starts_with("constraints are violated by 0.25 %"));
+  CHECK(warnings(j)[2] == told);
+  j.d.axial_force.row(3).setZero();  // a rod that bears nothing has nothing to give
+  CHECK(first_unstretched(j.run, j.d) == 4);
+}
+
 // A mass of 17 g flies freely, so far from where coordinates are counted: its position is rounded by 64
 // units in a step, which add up to a velocity along each axis, and what its weight could do over that reach
 // is rounded once a step, at random. The one counts close by, the other far away.

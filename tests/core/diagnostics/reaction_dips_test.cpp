@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The size of a reaction that passes nothing within a step.
+// The size of a reaction that passes nothing within a step, and its peaks.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/diagnostics/peaks.hpp"
+#include "core/diagnostics/reactions.hpp"
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -53,6 +58,71 @@ end_time = 4
       CHECK(smallest_of_column(run, d, "B.reaction_N") < 1e-3);
       CHECK(smallest_of_column(run, d, "B.reaction_N") >= 0);
     }
+}
+
+// Between states a reaction goes straight on, as far as they tell: its least size there by 2001 points.
+TEST_CASE("a reaction dips between states where a straight line does, in the three lowest such steps") {
+  for (const double phase : {0.4, 1.3, 2.9, 4.6}) {
+    Diagnostics d;
+    for (const char* name : {"S.reaction_N", "S.reaction_x_N", "S.reaction_y_N", "S.reaction_z_N"})
+      d.columns.push_back({name, "", "N", {}});
+    constexpr int states = 30;
+    std::vector<Vec3> force;
+    for (int k = 0; k < states; ++k) {
+      force.emplace_back(3 * std::sin(2.3 * k + phase), 5 * std::sin(1.1 * k * k), 0.2 + std::cos(0.6 * k));
+      d.t.push_back(0.1 * k);
+      d.columns[0].values.push_back(force.back().norm());
+      for (Index x = 0; x < 3; ++x)
+        d.columns[static_cast<std::size_t>(x) + 1].values.push_back(force.back()[x]);
+    }
+    std::vector<std::pair<double, std::size_t>> dips;
+    for (std::size_t i = 0; i + 1 < states; ++i) {
+      std::pair<double, int> least{1e9, 0};
+      for (int k = 0; k <= 2000; ++k)
+        least = std::min(least, {(force[i] + k / 2000.0 * (force[i + 1] - force[i])).norm(), k});
+      if (least.second > 0 && least.second < 2000) dips.emplace_back(least.first, i);
+    }
+    std::ranges::sort(dips);
+    REQUIRE(dips.size() > 3);
+    CHECK(reaction_dips(d, "S.reaction_N") == std::vector{dips[0].second, dips[1].second, dips[2].second});
+    CHECK(reaction_dips(d, "S.reaction_x_N").empty());
+    CHECK(reaction_dips(d, "T.reaction_N").empty());
+  }
+}
+
+TEST_CASE("the peak of a reaction is the first of its largest that are known") {
+  const Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [2, 0, 0], fixed = true},
+         {name = "C", position = [1, 0.5, 0]}]
+rods = [{nodes = ["A", "C"], mass = 1}, {nodes = ["B", "C"], mass = 1}]
+[solver]
+step = 0.02
+end_time = 0.1
+)");
+  Diagnostics d = diagnose(run);
+  REQUIRE(d.t.size() == 6);
+  const auto set = [&d](const char* name, const std::vector<double>& values) {
+    std::ranges::find(d.columns, name, &Series::name)->values = values;
+  };
+  const double nan = std::nan("");
+  set("A.reaction_N", {nan, 3, 7, 7, nan, 2}), set("A.reaction_unique", {1, 1, 0, 1, 1, 1});
+  set("B.reaction_N", {nan, nan, nan, nan, nan, nan});
+  std::vector<PeakReaction> peaks = peak_reactions(run.trajectory.structure(), d);
+  REQUIRE(peaks.size() == 2);
+  CHECK(peaks[0].force_N == 7);
+  CHECK(peaks[0].t == d.t[2]);
+  CHECK(!peaks[0].unique);
+  CHECK(std::isnan(peaks[1].force_N));
+  CHECK(peaks[0].node != peaks[1].node);
+  set("A.reaction_N", {9, 3, 7, 7, nan, 2}), set("B.reaction_N", {1, 2, 3, 4, 5, 6});
+  peaks = peak_reactions(run.trajectory.structure(), d);
+  CHECK(peaks[0].force_N == 9);
+  CHECK(peaks[0].t == 0);
+  CHECK(peaks[0].unique);
+  CHECK(peaks[1].force_N == 6);
+  CHECK(peaks[1].t == d.t[5]);
 }
 
 }  // namespace reaction_dips_test
