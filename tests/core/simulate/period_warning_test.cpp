@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Steps that do not resolve a swing: which are warned of, and by what numbers.
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -9,6 +10,7 @@
 #include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/study/table.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -162,6 +164,37 @@ rods = [{nodes = ["O", "A"], mass = 0, area = 1e-4}, {nodes = ["A", "B"], mass =
   }
   options.method = "generalized_alpha";  // which lets them die out
   CHECK(elastic_step_warning(*model, start, options).empty());
+}
+
+// 90 masses in a row on 91 springs, more than are ever looked at at once: by dense eigenvalues.
+TEST_CASE("the fastest swing of a long row of springs is that of its dense eigenvalues") {
+  for (const double spread : {0.0, 0.02, 0.1, 0.2, 0.4, 0.8}) {
+    constexpr int count = 90;
+    const auto mass = [&](int k) { return 1 + spread * std::sin(1.7 * k * k); };
+    const auto stiffness = [&](int k) { return 700 * (1 + spread * std::cos(2.1 * k * k + 0.3)); };
+    std::string nodes = "{name = 'N0', position = [0, 0, 0], fixed = true}", line, springs;
+    for (int k = 1; k <= count + 1; ++k) {
+      const std::string name = "N" + std::to_string(k);
+      nodes += ", {name = '" + name + "', position = [" + std::to_string(k) + ", 0, 0], " +
+               (k > count ? "fixed = true}" : "mass = " + number(mass(k)) + "}");
+      if (k <= count) line += (k > 1 ? ", '" : "'") + name + "'";
+      springs += "[[forces]]\nkind = 'spring'\nnodes = ['N" + std::to_string(k - 1) + "', '" + name +
+                 "']\nstiffness = " + number(stiffness(k)) + "\n";
+    }
+    const auto model = model_of("[structure]\nkind = 'custom'\nnodes = [" + nodes +
+                                "]\n[[constraints]]\nkind = 'line'\nnodes = [" + line +
+                                "]\ndirection = [1, 0, 0]\n" + springs);
+    MatrixXd A = MatrixXd::Zero(count, count);  // M^-1/2 K M^-1/2
+    for (int k = 1; k <= count; ++k) {
+      A(k - 1, k - 1) = (stiffness(k) + stiffness(k + 1)) / mass(k);
+      if (k < count) A(k - 1, k) = A(k, k - 1) = -stiffness(k + 1) / std::sqrt(mass(k) * mass(k + 1));
+    }
+    const double square = Eigen::SelfAdjointEigenSolver<MatrixXd>(A).eigenvalues().maxCoeff();
+    const State start = initial_state(model->structure, model->system).state;
+    INFO(spread);
+    // A thousandth of w^2 is left.
+    CHECK(fastest_elastic_period(*model, start) == Approx(2 * pi / std::sqrt(square)).epsilon(1e-3));
+  }
 }
 
 // A clamped strip in segments of equal length l: of a free end with mass m across, k = E I / l^3 by one bend.
