@@ -2,6 +2,8 @@
 // Every column of a series, worked out anew from what a run says of its nodes.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/scene/library.hpp"
@@ -144,6 +146,41 @@ TEST_CASE("a ring's fold angle, its rate and its share are one and the same moti
           Approx((angles[i + 1] - angles[i - 1]) / (d.t[i + 1] - d.t[i - 1])).epsilon(0).margin(2e-3));
   }
   CHECK(d.at("deployed_fraction").values.back() == Approx(1).epsilon(1e-9));
+}
+
+// Two wheels that have nothing to do with each other, each turned by its motor more than once round.
+TEST_CASE("motors turn what is theirs, alone or beside each other") {
+  const auto wheel = [](const std::string& name, double at, double radius, double torque, double speed) {
+    const auto text = [](double x) { return std::to_string(x); };
+    return std::pair{
+        "{name = 'O" + name + "', position = [" + text(at) + ", 0, 0], fixed = true}, {name = 'E" + name +
+            "', position = [" + text(at + 1) + ", 0, 0], fixed = true}, {name = 'T" + name +
+            "', position = [" + text(at) + ", " + text(radius) + ", 0], mass = 0.7}",
+        "[[structure.rods]]\nnodes = ['O" + name + "', 'T" + name +
+            "']\nmass = 0\n[[constraints]]\nkind = 'plane'\nnodes = ['T" + name +
+            "']\nnormal = [0, 0, 1]\n[[forces]]\nkind = 'motor'\nname = '" + name + "'\nnodes = ['E" + name +
+            "', 'O" + name + "', 'T" + name + "']\naxis = [0, 0, " + text(speed) + "]\nstall_torque = " +
+            text(torque) + "\nno_load_speed = " + text(std::abs(speed)) + "\ninertia = 0\n"};
+  };
+  const auto solved = [](const std::string& nodes, const std::string& rest) {
+    const Simulation run = testing::run_scene("[structure]\nkind = 'custom'\nnodes = [" + nodes + "]\n" +
+                                              rest + "[solver]\nstages = 4\nstep = 0.02\nend_time = 2\n");
+    return diagnose(run);
+  };
+  const auto [nodes_a, a] = wheel("a", 0, 0.3, 0.9, 800);
+  const auto [nodes_b, b] = wheel("b", 5, 0.4, 0.5, -700);
+  const auto [nodes_c, c] = wheel("c", -7, 0.2, 0.2, 900);
+  const Diagnostics all = solved(nodes_a + ", " + nodes_b + ", " + nodes_c, a + b + c);
+  for (const auto& [name, alone] : {std::pair{std::string("a"), solved(nodes_a, a)},
+                                    {"b", solved(nodes_b, b)},
+                                    {"c", solved(nodes_c, c)}}) {
+    CHECK(std::abs(alone.at(name + ".angle_rad").values.back() -
+                   alone.at(name + ".angle_rad").values.front()) > 7);
+    for (const char* column : {".angle_rad", ".torque_N_m", ".power_W", ".energy_J"})
+      for (std::size_t i = 0; i < all.t.size(); ++i)
+        CHECK(all.at(name + column).values[i] ==
+              Approx(alone.at(name + column).values[i]).epsilon(1e-9).margin(1e-9));
+  }
 }
 
 }  // namespace columns_test
