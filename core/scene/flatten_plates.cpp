@@ -25,7 +25,7 @@ constexpr double coordinate_round_off = 1e-15;  // of x over the largest coordin
 constexpr double flat_enough = 1e-3;            // of that
 constexpr double most_moved = 0.05;  // of the sizes of the plates around: nearest flat is another shape
 constexpr double added_to_diagonal = 1e-12;  // to the diagonal of J J^T, whose entries are 1
-constexpr int most_steps = 20;
+constexpr int most_rounds = 20;
 
 struct PlateHeights {
   Vec3 normal;
@@ -118,7 +118,7 @@ void ImportedShape::flatten() {
   const std::vector<CustomNode> given = spec.nodes;
   VectorXd dx = VectorXd::Zero(3 * static_cast<Index>(given.size()));
   bool sound = true;
-  for (int k = 0; k < most_steps && sound && all.worst_off > flat_enough; ++k) {
+  for (int round = 0; round < most_rounds && sound && all.worst_off > flat_enough; ++round) {
     sound = step_flatter(all, *this, dx);
     for (std::size_t i = 0; sound && i < given.size(); ++i)
       spec.nodes[i].position += dx.segment<3>(3 * static_cast<Index>(i));

@@ -119,7 +119,7 @@ Replacement inside_brackets(std::string_view text, const TomlTree& brackets, con
   // An item that has a line of its own is followed by another.
   const std::size_t line = text.find_last_of("\n", at) + 1, first = text.find_first_not_of(" \t", line);
   const std::size_t next = text.find_first_not_of(" \t\r,", at);
-  const bool own_line = line > open && next != text.npos && text[next] == '\n' && !brackets.items.empty();
+  const bool own_line = line > open && next != text.npos && text[next] == '\n';
   return {at, at, own_line ? ",\n" + std::string(text.substr(line, first - line)) + entry : ", " + entry};
 }
 

@@ -169,6 +169,8 @@ TEST_CASE("overrides that cannot be applied say why") {
   CHECK(with({"a..b=1"}).problems == "--set a..b: the key has an empty part\n");
   CHECK(with({"a[x]=1"}).problems == "--set a[x]: a is not a list\n");
   CHECK(with({"\"a=1"}).problems == "--set \"a: a quote in the key stays open\n");
+  CHECK(with({"title.\"\"=1"}).problems ==
+        "--set title.\"\": title is text, not a table\n");  // an empty name
   CHECK(with({"=1"}).problems.find("the key has an empty part") != std::string::npos);
 }
 
