@@ -17,7 +17,7 @@ constexpr int parts_of_step = 8;
 constexpr double rounding_of_pull = 1e-13;  // of what pulls both ways
 constexpr double same_place = 1e-8;         // of the way: a stop in the deployed pose
 constexpr double same_energy = 1e-5;        // of all work, in which a motion must balance
-constexpr long most_turns_at_once = 100, most_steps = 100000;
+constexpr int most_turns_at_once = 100, most_steps = 100000;
 constexpr int poses_for_stops = 400;
 constexpr double level = 1e-9;  // slope of the margin, of what it is the difference of, that is none
 constexpr double next_to = 1e-6, near_start = 1e-2;  // the ends of a part of a step, as shares of it
@@ -184,7 +184,7 @@ void MarginMotion::run(double sense, std::optional<double> goal, double end_time
   if (sense * speed_ < 0) return;
   resting_ = speed_ == 0;
   bool first = resting_;
-  for (long count = 0; count < most_steps; ++count) {
+  for (int round = 0; round < most_steps; ++round) {
     if (motion_.t() > crowd_time_) crowd_time_ = motion_.t(), crowd_ = 0;
     if (++crowd_ > most_turns_at_once)
       throw PathRefused("at t = " + seconds(motion_.t()) + ": cables or friction switch without end");

@@ -366,12 +366,12 @@ bool Path::point(double s, VectorXd& z, VectorXd& tangent) const {
   return true;
 }
 
-std::optional<double> Path::locate(const VectorXd& z, long most, int towards) const {
+std::optional<double> Path::locate(const VectorXd& z, long most) const {
   VectorXd at(z.size()), tangent(z.size());
   const double touching = 1e-12 * tracer_->grain();
   for (long i = 0; i < 2 * most; ++i) {
     const long out = i / 2;
-    const bool ahead = (i % 2 == 0) == (towards > 0);
+    const bool ahead = i % 2 == 0;
     const PathPiece* p = piece(ahead ? out : -out - 1);
     if (!p) continue;
     // s is the length in the mass metric: the pose is no farther from the middle than half of the piece.

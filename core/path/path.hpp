@@ -64,8 +64,8 @@ class Path {
   bool point(double s, VectorXd& z, VectorXd& tangent) const;  // false: not that far
 
   // s of a pose on the path, looked for up to `most` pieces either way; nothing where it lies further from
-  // the path than rounding. `towards`: +1 or -1, the way to look first.
-  std::optional<double> locate(const VectorXd& z, long most, int towards = 1) const;
+  // the path than rounding.
+  std::optional<double> locate(const VectorXd& z, long most) const;
 
  private:
   class Tracer;

@@ -65,7 +65,6 @@ class PathMotion {
   void begin(double t, double s, double v) { t_ = t, s_ = s, v_ = v; }
   void prescribe(const PathLaw& law, const PathDrive& drive) { law_ = &law, drive_ = drive; }
 
-  bool driven() const { return drive_.there(); }
   // On to `latest` or less. Throws PathRefused where no step can be solved.
   void advance(PathLaw& law, double latest);
   void cut(double t);                      // what lies behind is forgotten

@@ -300,7 +300,6 @@ class PathRun {
   }
 
   void strike(std::size_t i) {
-    if (drive_.there()) throw PathRefused("at t = " + seconds(motion_.t()) + ": a drive meets a stop");
     for (std::size_t other = 0; other < sides_.stops().size(); ++other)
       if (other != i && watch_.meets(motion_, other))
         throw PathRefused("at t = " + seconds(motion_.t()) + ": two stops are met at once");

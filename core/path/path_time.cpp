@@ -181,7 +181,7 @@ std::optional<double> deployed_pose(const Path& path, const Deployment& deployme
   if (!first) return std::nullopt;
   const DeployedSearch search(path, deployment, first->q.col(0));
   PathLook last{0, 0, deployment.first_angles()}, before = last;
-  int looks = 0;  // since the deployment was first ahead
+  bool ahead = false;  // the deployment, at the last look
   for (long k = 0; k < most_pieces; ++k) {
     const PathPiece* piece = path.piece(forward ? k : -k - 1);
     if (!piece) return std::nullopt;
@@ -190,13 +190,12 @@ std::optional<double> deployed_pose(const Path& path, const Deployment& deployme
       PathLook now{piece->at(x[at]), 0, last.angles};
       deployment.count_on(piece->q.col(at), now.angles);
       now.left = deployment.remaining(piece->q.col(at), now.angles);
-      if (looks > 0 && now.left <= 0) {
-        if (deployment.is_passed(last.left, now.left)) return search.crossing(last, now);
-        looks = 0;  // through the opposite pose: deployed comes from the other side
-      }
-      if (looks > 1 && last.left <= before.left && last.left < now.left)
+      // Through the opposite pose deployed comes from the other side.
+      if (ahead && now.left <= 0 && deployment.is_passed(last.left, now.left))
+        return search.crossing(last, now);
+      if (ahead && last.left <= before.left && last.left < now.left)
         if (const auto dip = search.dip(before, now)) return dip;
-      looks += looks > 0 || now.left > 0;
+      ahead = now.left > 0;
       before = std::exchange(last, std::move(now));
     }
   }

@@ -135,8 +135,7 @@ double PathWatch::margin(const PathMotion& motion, double t, Index i) const {
 bool PathWatch::pressed(const PathMotion& motion, double t, double to, Index i, double margin) const {
   constexpr double rounded = 1e-12;  // of what the force is the sum of
   constexpr double moment = 1e-3;    // of the way to `to`
-  if (motion.driven() || i >= static_cast<Index>(sides_.stops().size()) || !(std::abs(margin) <= 1))
-    return false;
+  if (i >= static_cast<Index>(sides_.stops().size()) || !(std::abs(margin) <= 1)) return false;
   double s = 0, v = 0;
   motion.at(t, s, v);
   if (v != 0) return false;
@@ -159,7 +158,8 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
   // The deployed pose is passed where rounding does not say so, or at speed. Slower than that, as a share of
   // the way in a step, it may be a dead centre or the end of a drive.
   const double slow = 2 * std::sqrt(rounded_);
-  for (const double t1 : looked_at(motion, from, to)) {
+  for (int part = 1; part <= samples; ++part) {
+    const double t1 = part == samples ? to : from + (to - from) * part / samples;
     margins(motion, t1, b, rates_b);
     if (a[deployed] > margin_) armed_ = true;
     const bool turned_back = !(rates_a[deployed] < 0) && rates_b[deployed] > 0 && b[deployed] > rounded_;
@@ -196,7 +196,7 @@ std::pair<double, int> PathWatch::first_event(const PathMotion& motion, double f
     t0 = t1;
   }
   // A drive that ends in the deployed pose stays within rounding of it, whose sign is no event.
-  if (edge && armed_ && (first.second < 0 || first.second == deployed)) {
+  if (edge && armed_) {  // with which there is nothing else to meet
     const double nothing = std::max(1e-9, rounded_);
     margins(motion, to, b, rates_b);
     if (std::abs(b[deployed]) <= nothing && std::abs(rates_b[deployed]) * step_ <= nothing)
@@ -215,36 +215,12 @@ bool PathWatch::stands_before(const PathMotion& motion, const std::pair<double, 
 
 double PathWatch::least_between(const PathMotion& motion, Index i, double a, double b) const {
   VectorXd m, rates;
-  for (int it = 0; it < 60 && b - a > 2e-16 * std::abs(b); ++it) {
+  for (int it = 0; it < 60 && b - a > 2e-16 * b; ++it) {
     const double t = 0.5 * (a + b);
     margins(motion, t, m, rates);
     (rates[i] < 0 ? a : b) = t;
   }
   return b;
-}
-
-// Equal parts of a step, and the time at which the motion turns: margins are smallest there.
-std::vector<double> PathWatch::looked_at(const PathMotion& motion, double from, double to) const {
-  std::vector<double> times;
-  double s = 0, before = 0, v = 0, t0 = from;
-  motion.at(from, s, before);
-  for (int k = 1; k <= samples; ++k) {
-    const double t1 = k == samples ? to : from + (to - from) * k / samples;
-    motion.at(t1, s, v);
-    if (before * v < 0) {
-      double low = t0, high = t1, middle = 0;
-      for (int it = 0; it < 50; ++it) {
-        const double t = 0.5 * (low + high);
-        motion.at(t, s, middle);
-        (before * middle > 0 ? low : high) = t;
-      }
-      if (high > t0 && high < t1) times.push_back(high);
-    }
-    times.push_back(t1);
-    before = v;
-    t0 = t1;
-  }
-  return times;
 }
 
 // Regula falsi and, every third time, bisection: to the last bit of the time. A margin that begins at zero
@@ -266,7 +242,7 @@ double PathWatch::zero_of(const PathMotion& motion, Index i, double a, double b)
       return a;
     }
   }
-  for (int it = 0; it < 200 && b - a > 2e-16 * std::abs(b); ++it) {
+  for (int it = 0; it < 200 && b - a > 2e-16 * b; ++it) {
     double t = it % 3 == 2 ? 0.5 * (a + b) : b - fb * (b - a) / (fb - fa);
     if (!(t > a && t < b)) t = 0.5 * (a + b);
     if (!(t > a && t < b)) break;

@@ -54,7 +54,6 @@ class PathWatch {
   bool pressed(const PathMotion& motion, double t, double to, Index i, double margin) const;
   // Whether the stop that is met first stands before the deployed pose, told at t, by more than rounding.
   bool stands_before(const PathMotion& motion, const std::pair<double, int>& met, double t) const;
-  std::vector<double> looked_at(const PathMotion& motion, double from, double to) const;
   double zero_of(const PathMotion& motion, Index i, double a, double b) const;
 
   const OneSided& sides_;

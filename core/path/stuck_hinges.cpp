@@ -299,13 +299,13 @@ class StuckMaker {
     motion_.law().looseness = loose_steps;
     double low = 0, high = std::max(first_guess(some), std::numeric_limits<double>::min());
     double stalls_at = 0;
-    int doublings = 0;
-    for (; doublings < most_doublings && arrives(high); ++doublings) {
+    int tries = 0;
+    for (; tries < most_doublings && arrives(high); ++tries) {
       low = high;
       high *= 2;
     }
     stalls_at = motion_.way();
-    if (doublings == most_doublings) high = low = unbounded_torque;
+    if (tries == most_doublings) high = low = unbounded_torque;
     const double none = no_torque * first_guess(some);
     while (low < unbounded_torque && high - low > torque_found * high && high > none) {
       const double middle = 0.5 * (low + high);

@@ -161,7 +161,7 @@ class Trial {
       const Node &node = structure_.nodes[i], &next = structure_.nodes[slot(step_.to[i])];
       if (differs(i, loads, largest)) unlike("the load on " + odd(i, loads, largest));
       if (node.mass != next.mass) unlike("the mass of node " + node.name);
-      if (node.ghost || next.ghost) throw SectorRefused("a motor has a number of its own: " + node.name);
+      if (node.ghost) throw SectorRefused("a motor has a number of its own: " + node.name);
       if (differs(i, velocities, fastest)) unlike("the velocity of node " + odd(i, velocities, fastest));
     }
     if (!((step_.turn * structure_.gravity - structure_.gravity).norm() <=

@@ -126,4 +126,55 @@ TEST_CASE("what strikes a stop that it touches at the start strikes it at once")
   }
 }
 
+// 1 kg beside its stop under a - b t newtons: it leaves by 2/27 a t^2 at most and is back at t = 3 a / b, at
+// a t / 2; thrown back with half of that, for the second time after sqrt(3/2) - 1 of t. However long steps
+// are beside that, of motions that they hold exactly.
+TEST_CASE("a flight from a stop that is much shorter than a step ends when it ends") {
+  const double a = 0.7;
+  for (const double side : {1.0, -1.0})
+    for (const double back : {3e-2, 2e-3, 1.3e-4}) {
+      CAPTURE(side, back);
+      const Scene scene = read_scene_text(
+          "[structure]\nkind = 'custom'\nnodes = [{name = 'P', position = [0.37, 0, 0], mass = 1}]\n"
+          "[[constraints]]\nkind = 'line'\nnodes = ['P']\ndirection = [1, 0, 0]\n[[constraints]]\nkind = "
+          "'coordinate_stop'\nname = 's'\nnodes = ['P']\ndirection = [" +
+              exact_number(side) + ", 0, 0]\nmin = " + exact_number(0.37 * side) +
+              "\nrestitution = 0.5\nrest_speed = 1e-9\n[[forces]]\nkind = 'load_over_time'\nnodes = "
+              "['P']\nforce = [" +
+              exact_number(side) + ", 0, 0]\ntimes = [0, 1]\nvalues = [0.7, " +
+              exact_number(a - 3 * a / back) + "]\n[solver]\nend_time = 1\nstep = 0.01\n",
+          "flight.toml");
+      const Simulation run = simulate_on_path(build_model(scene), scene.solver);
+      REQUIRE(run.events.size() >= 2);
+      const double speed = 0.5 * a * back, rounding = 1e-15 / speed;  // of the gap, over its rate
+      CHECK(run.events[0].name == "stop s");
+      CHECK(run.events[0].t == Approx(back).epsilon(1e-13).margin(rounding));
+      CHECK(run.events[0].energy_lost == Approx(0.375 * speed * speed).epsilon(1e-11 + 4 * a * rounding / speed));
+      CHECK(run.events[1].t == Approx(std::sqrt(1.5) * back).epsilon(1e-13).margin(4 * rounding));
+    }
+}
+
+// Thrown up from 0.5 m above a peg 2 cm beside its line, which it does not come closer to than 2.1 cm: in one
+// step it turns and falls past, for some milliseconds below that distance.
+TEST_CASE("what turns first and passes a stop then, between two looks, meets it") {
+  const double g = 9.81, d = 0.02, r = 0.021, meets = std::sqrt(r * r - d * d);
+  for (int k = 0; k < 12; ++k) {
+    const double v = 1.3 + 0.17 * k, at = std::sqrt(v * v + 2 * g * (0.5 - meets));
+    const Scene scene = read_scene_text(
+        "[structure]\nkind = 'custom'\nnodes = [{name = 'W', position = [0.02, 0, 0], fixed = true}, {name = "
+        "'P', position = [0, 0, 0.5], velocity = [0, 0, " +
+            exact_number(v) +
+            "], mass = 1}]\n[[constraints]]\nkind = 'line'\nnodes = ['P']\ndirection = [0, 0, 1]\n"
+            "[[constraints]]\nkind = 'length_stop'\nname = 's'\nnodes = ['W', 'P']\nmin = 0.021\n"
+            "restitution = 0.5\n[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nend_time = 2\nstep = "
+            "0.01\n",
+        "peg.toml");
+    CAPTURE(v);
+    const Simulation run = simulate_on_path(build_model(scene), scene.solver);
+    REQUIRE(!run.events.empty());
+    CHECK(run.events[0].t == Approx((v + at) / g).epsilon(1e-12));
+    CHECK(run.events[0].energy_lost == Approx(0.375 * at * at).epsilon(1e-11));
+  }
+}
+
 }  // namespace event_at_end_test

@@ -2,6 +2,7 @@
 // How the motion of a margin begins and ends, against closed forms: loads over time, stops, friction, cables.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "core/path/margin.hpp"
@@ -108,6 +109,40 @@ min = 0
   CHECK(at_one + 0.25 * rest + 0.5 * rest * rest == Approx(1).epsilon(1e-10));
   // Without the stop it sets out the other way, and that is no stall.
   CHECK(margin_in(slider(over_time("turns", 1, "[0, 1]", "[-1, 1]"))).end == MarginEnd::other_way);
+}
+
+// Along -x as along x: loads that come late, friction, stops that bar the way or hold it at the start.
+TEST_CASE("a motion the other way along its coordinate is the mirror image") {
+  const auto check_mirrored = [](const std::function<std::string(double)>& with, MarginEnd end) {
+    const Margin one = margin_in(with(1)), other = margin_in(with(-1));
+    CHECK(one.end == end);
+    CHECK(other.end == end);
+    CHECK(other.stop == one.stop);
+    const auto same = [](double a, double b) {
+      CAPTURE(a, b);
+      CHECK((a == b || std::abs(a - b) <= 1e-9));  // of metres, seconds and joules
+    };
+    same(other.motion.back().s, one.motion.back().s);
+    same(other.motion.back().t, one.motion.back().t);
+    same(other.motion.back().kinetic, one.motion.back().kinetic);
+    same(other.points.back().s, one.points.back().s);
+    same(other.worst.margin, one.worst.margin);
+    same(other.end_s, one.end_s);
+    same(other.dynamic_min, one.dynamic_min);
+  };
+  const std::string friction = dry + "kinetic = 0.2\nstatic = 0.3\n";
+  const auto stop = [](double side, double at) {
+    return "[[constraints]]\nname = \"bar\"\nkind = \"coordinate_stop\"\nnodes = [\"A\"]\ndirection = [1, 0, "
+           "0]\n" +
+           std::string(side > 0 ? "max = " : "min = ") + exact_number(side * at) + "\n";
+  };
+  const auto late = [](double side) { return over_time("late", side, "[0, 0.7, 9.7]", "[0, 0, 9]"); };
+  check_mirrored([&](double side) { return slider(late(side), side); }, MarginEnd::arrives);
+  check_mirrored([&](double side) { return slider(late(side) + friction, side); }, MarginEnd::arrives);
+  check_mirrored([&](double side) { return slider(late(side) + friction, -side); }, MarginEnd::other_way);
+  check_mirrored([&](double side) { return slider(late(side) + stop(side, 0.43), side); },
+                 MarginEnd::stopped);
+  check_mirrored([&](double side) { return slider(late(side) + stop(side, 0), side); }, MarginEnd::stopped);
 }
 
 TEST_CASE("the static margin has the loads over time of the moment at which the motion is in that pose") {
@@ -408,6 +443,7 @@ TEST_CASE("the static margin sees pulses of loads however short they are") {
     CHECK(margin.worst.s == Approx(std::pow(std::stod(at), 2)).epsilon(3e-3));
     double most = 0;
     for (const MarginPoint& p : margin.points) most = std::min(most, p.forces[1]);
+    for (std::size_t i = 1; i < margin.points.size(); ++i) CHECK(margin.points[i].s > margin.points[i - 1].s);
     CHECK(most == Approx(-6).epsilon(1e-12));
   }
 }

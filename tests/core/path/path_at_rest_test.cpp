@@ -266,4 +266,43 @@ restitution = 0
   }
 }
 
+// 1.7 kg at 0.9 m/s: held back by both, at rest by both until the load is 0.55 N, and again by both.
+TEST_CASE("two frictions of one coordinate act as one with their sum") {
+  const std::string begin = R"([structure]
+kind = "custom"
+nodes = [{name = "P", position = [0.3, 0, 0], mass = 1.7, velocity = [0.9, 0, 0]}]
+[[constraints]]
+kind = "line"
+nodes = ["P"]
+direction = [1, 0, 0]
+[[forces]]
+kind = "load_over_time"
+nodes = ["P"]
+force = [1, 0, 0]
+times = [5, 9]
+values = [0, 2]
+[solver]
+step = 0.01
+end_time = 7
+)";
+  const auto friction = [](const std::string& name, double kinetic, double most) {
+    return "[[forces]]\nkind = 'friction'\nname = '" + name +
+           "'\nnodes = ['P']\ndirection = [1, 0, 0]\nkinetic = " + number(kinetic) +
+           "\nstatic = " + number(most) + "\n";
+  };
+  for (const std::string& text :
+       {friction("both", 0.34, 0.55), friction("one", 0.13, 0.25) + friction("other", 0.21, 0.3)}) {
+    const Simulation run = run_on_path(begin + text);
+    REQUIRE(run.status == RunStatus::completed);
+    const double stops = 1.7 * 0.9 / 0.34, gives = 6.1, late = 7 - gives;
+    for (const Event& event : run.events)
+      CHECK((event.t < 5.5 ? stops : gives) == Approx(event.t).epsilon(1e-11));
+    CHECK(run.trajectory.positions_at(5.5)[0] == Approx(0.3 + 0.45 * stops).epsilon(1e-11));
+    // (0.55 - 0.34) t + 0.5 t^2 / 2 of impulse from there on.
+    CHECK(testing::end_positions(run)[0] ==
+          Approx(0.3 + 0.45 * stops + (0.21 * late * late / 2 + 0.5 * std::pow(late, 3) / 6) / 1.7)
+              .epsilon(1e-11));
+  }
+}
+
 }  // namespace path_at_rest_test

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cables where a stop or a latch stops the motion on the path, against closed forms.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 
+#include "core/diagnostics/peaks.hpp"
 #include "core/path/path_run.hpp"
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
@@ -204,6 +206,55 @@ end_time = 0.01
   const Simulation few = run(1e-5);
   CHECK(few.events.size() >= 999);
   CHECK(few.trajectory.node_velocities(few.trajectory.size() - 1).norm() == Approx(1.0));
+}
+
+// At 1.3 m/s into a cable of 4e6 N/m: for pi sqrt(m / k), a sixth of a step, and with v sqrt(k m) at most.
+TEST_CASE("a cable that pulls for much less than a step has states meanwhile which know its peak") {
+  for (const double k : {4e6, 7e5}) {
+    const Simulation run = run_on_path(slider(1.4, 1.3, R"([[forces]]
+kind = "spring"
+name = "cab"
+nodes = ["O", "P"]
+tension_only = true
+free_length = 1.5
+stiffness = )" + number(k) + "\n[solver]\nstep = 0.01\nend_time = 0.2\n"));
+    const double taut = 0.1 / 1.3, slack = taut + std::acos(-1.0) / std::sqrt(k);
+    check_events(run, {{"cab pulls", taut}, {"cab is slack", slack}});
+    for (std::size_t i = 1; i < run.trajectory.size(); ++i)
+      CHECK(run.trajectory.time(i) >= run.trajectory.time(i - 1));
+    // A sine at 8 of its places and a parabola through the largest ones.
+    CHECK(largest_of_column(run, diagnose(run), "O.reaction_N") == Approx(1.3 * std::sqrt(k)).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("a run on the path tells how far it is and stops when it is asked to") {
+  const Scene scene = read_scene_text(slider(2, 0.3,
+                                             "[solver]\nstep = 0.01\nend_time = 1\n[gravity]\n"
+                                             "acceleration = [0.7, 0, 0]\n"),
+                                      "s.toml", {});
+  const auto model = build_model(scene);
+  SimulationHooks hooks;
+  std::vector<double> told;
+  int asked = 0, most = 1 << 30;
+  hooks.progress = [&](double share) { told.push_back(share); };
+  hooks.cancelled = [&] { return ++asked > most; };
+  const Simulation whole = simulate_on_path(model, scene.solver, hooks);
+  CHECK(whole.status == RunStatus::completed);
+  CHECK(std::is_sorted(told.begin(), told.end()));
+  CHECK(told.front() == 0);
+  CHECK(told.back() == 1);
+  REQUIRE(asked >= 3);
+  most = asked - 1;
+  asked = 0;
+  told.clear();
+  const Simulation part = simulate_on_path(model, scene.solver, hooks);
+  CHECK(part.status == RunStatus::stopped);
+  CHECK(told.back() < 1);
+  CHECK(part.trajectory.end_time() < 1);
+  // What is done is kept, and is as in the whole.
+  const double t = part.trajectory.end_time();
+  REQUIRE(t > 0);
+  CHECK(end_positions(part)[3] == Approx(2 + 0.3 * t + 0.35 * t * t).epsilon(1e-12));
 }
 
 }  // namespace path_jumps_test

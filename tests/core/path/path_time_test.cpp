@@ -120,6 +120,28 @@ TEST_CASE("the deployed pose is the first that is come to from the stowed side b
   }
 }
 
+TEST_CASE("a pose is found on the path on either side of its start, and one beside the path is not") {
+  for (const double at : {20.0, 200.0, -70.0}) {
+    const Rod rod(at * degrees);
+    const auto pose = [&](double angle, double far) {
+      VectorXd q = VectorXd::Zero(6);
+      q[3] = far * length * std::cos(angle);
+      q[5] = -far * length * std::sin(angle);
+      return rod.model->system.reduce(q);
+    };
+    for (const double turn : {0.013, 0.7, 2.3, -0.019, -0.6, -2.1}) {
+      CAPTURE(at, turn);
+      const double angle = rod.start + turn;
+      const auto found = rod.path->locate(pose(angle, 1), 20);
+      REQUIRE(found);
+      // Coordinates of 1 m at rounding.
+      CHECK(*found == Approx(rod.s(angle)).epsilon(0).margin(1e-13));
+      CHECK_FALSE(rod.path->locate(pose(angle, 1 + 1e-7), 20));
+      if (std::abs(turn) > 2) CHECK_FALSE(rod.path->locate(pose(angle, 1), 1));
+    }
+  }
+}
+
 TEST_CASE("the first time at which something is above zero is seen at edges and before jumps") {
   const auto rise = [](double t) { return t * t - 0.7; };
   for (const double h : {0.01, 0.13, 5.0})
