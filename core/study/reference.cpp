@@ -26,8 +26,7 @@ using Stepper = std::function<bool(State&, double h)>;
 // straddle.
 std::vector<double> step_ends(double begin, double end, int parts, const std::vector<TimeEdge>& edges) {
   std::vector<double> ends;
-  auto edge = std::upper_bound(edges.begin(), edges.end(), begin,
-                               [](double t, const TimeEdge& e) { return same_instant(t, e.t) || t < e.t; });
+  auto edge = edges.begin();
   for (int k = 1; k <= parts; ++k) {
     const double target = k == parts ? end : begin + (end - begin) * k / parts;
     for (; edge != edges.end() && edge->t < target; ++edge)
@@ -50,10 +49,14 @@ Solution solve(const Model& model, const Stepper& step, double end, int interval
   for (int i = 0; i < intervals; ++i) {
     for (const double target : step_ends(H * i, H * (i + 1), parts, edges)) {
       if (hooks.stopped()) throw Cancelled();
-      const bool jump = std::ranges::any_of(
-          edges, [&](const TimeEdge& e) { return e.jump && same_instant(target, e.t) && target <= e.t; });
-      if (!step(state, (jump ? before_jump(target) : target) - state.t)) return std::nullopt;
-      state.t = target;
+      // Which of both is the earlier one by rounding is no matter: what jumps is seen behind it only.
+      const auto jump = std::ranges::find_if(edges, [&](const TimeEdge& e) {
+        return e.jump && same_instant(target, e.t) && same_instant(e.t, target);
+      });
+      const bool jumps = jump != edges.end();
+      if (!step(state, (jumps ? before_jump(std::min(target, jump->t)) : target) - state.t))
+        return std::nullopt;
+      state.t = jumps ? std::max(target, jump->t) : target;
     }
     model.system.expand(state.z, q);
     out.push_back(q);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "core/integrators/dvm.hpp"
 #include "core/integrators/integrator.hpp"
@@ -138,6 +139,36 @@ TEST_CASE("a drive may jump at the ends of a reference and not between them") {
   for (const double start : {0.3, 0.41, 0.75})
     CHECK_THROWS_WITH(reference(start), Catch::StartsWith("there is no reference across the time of " +
                                                           short_number(start, 6) + " s"));
+}
+
+// 1.3 kg, free, under F until t0, none until t1 and G from there on. Times of the reference are sums that may
+// round to either side of those of the jumps.
+TEST_CASE("a reference sees of a load that jumps at one of its times only what is before it") {
+  constexpr double mass = 1.3, F = 2.1, G = -4.7;
+  for (const auto& [end, intervals, t0, t1] : {std::tuple{1.2, 12, 0.3, 0.7},
+                                               {1.2, 12, 0.6, 1.1},
+                                               {0.9, 3, 0.3, 0.6},
+                                               {2.1, 7, 0.9, 1.8},
+                                               {1.2, 12, 0.31, 0.61}}) {
+    CAPTURE(end, intervals, t0, t1);
+    const std::string first = exact_number(t0), second = exact_number(t1);
+    const Reference r = solve_reference(
+        build_model(read_scene_text(
+            "[structure]\nkind = 'custom'\nnodes = [{name = 'P', position = [0.3, 0.2, 0.1], mass = 1.3}, "
+            "{name = "
+            "'O', position = [1.3, 0.2, 0.7], fixed = true}]\n[[forces]]\nkind = 'load_over_time'\nnodes = "
+            "['P']\nforce = [1, 0, 0]\ntimes = [0, " +
+                first + ", " + first + ", " + second + ", " + second +
+                ", 9]\nvalues = [2.1, 2.1, 0, 0, -4.7, -4.7]\n",
+            "jumps.toml", {})),
+        end, intervals, {});
+    CHECK(r.confirmed);
+    for (std::size_t i = 0; i < r.q.size(); ++i) {
+      const double t = r.t[i], u = std::min(t, t0), w = std::max(0.0, t - t1);
+      const double x = 0.3 + (0.5 * F * u * u + F * u * (t - u) + 0.5 * G * w * w) / mass;
+      CHECK(r.q[i].x() == Approx(x).epsilon(1e-13));
+    }
+  }
 }
 
 }  // namespace reference_levels_test
