@@ -157,12 +157,12 @@ class Search {
   // the other side, or on it. A golden section, until what is left of the dip could not reach there: it falls
   // by its height once more at most where its parts are equal and it is convex, here by twice that.
   bool in_dip(Evaluation before, Evaluation middle, Evaluation behind) {
-    constexpr int most_looks = 60;  // to 3e-13 of the width
-    const double nothing = 0;       // where many measures have their least
+    constexpr int most_rounds = 60;  // to 3e-13 of the width
+    const double nothing = 0;        // where many measures have their least
     if (off(before) < off(middle) || off(behind) < off(middle)) return false;
     const Touch touch = touch_of(before, middle, behind);
     bool reaches = true;
-    for (int look = 0; look < most_looks; ++look) {
+    for (int round = 0; round < most_rounds; ++round) {
       const double height = std::max(off(before), off(behind)) - off(middle);
       const double left = middle.x - before.x, right = behind.x - middle.x;
       const double ratio = std::max(left / right, right / left);
@@ -170,7 +170,7 @@ class Search {
       if (!reaches) break;
       constexpr double golden = 0.3819660112501051;
       double x = middle.x + golden * (std::abs(left) < std::abs(right) ? right : -left);
-      if (look == 0 && (before.x < nothing) != (behind.x < nothing) && middle.x != nothing) x = nothing;
+      if (round == 0 && (before.x < nothing) != (behind.x < nothing) && middle.x != nothing) x = nothing;
       const bool is_behind = (x - middle.x) * right > 0;
       if (x == middle.x || x == before.x || x == behind.x) break;
       const Evaluation e = at(x);

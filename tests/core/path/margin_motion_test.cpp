@@ -95,6 +95,7 @@ TEST_CASE("a structure waits at rest until a load over time exceeds what holds i
   const Margin never = margin_in(slider(ramp + dry + "kinetic = 70\n"));
   CHECK(never.end == MarginEnd::stalls);
   CHECK(never.motion.size() == 1);
+  CHECK(never.dynamic_min == -1);  // nothing drives it at first, against what holds
   // Pushed against a stop at first, let go of at t = 0.5, x'' = 2 (t - 0.5).
   const Margin lies = margin_in(slider(over_time("turns", 1, "[0, 1]", "[-1, 1]") + R"([[constraints]]
 kind = "coordinate_stop"

@@ -161,6 +161,28 @@ TEST_CASE("the stiffness that is driven is one that moves something") {
         Names{"mass_ratio", "force"});
 }
 
+// Slack until 0.8 s of 1 s.
+TEST_CASE("a cable that is taut late in the run moves something") {
+  const std::string late = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true},
+  {name = "A", position = [1, 0, 0], mass = 0.7, velocity = [0.5, 0, 0]}]
+[[constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [1, 0, 0]
+[[forces]]
+kind = "spring"
+nodes = ["O", "A"]
+tension_only = true
+stiffness = 3
+free_length = )";
+  const std::string solver = "\n[solver]\nstep = 0.01\nend_time = 1\n";
+  CHECK(extremes_of(source_of(late + "1.4" + solver)).at("stiffness").label == "forces[0].stiffness");
+  CHECK(extremes_of(source_of(late + "1.6" + solver)).count("stiffness") == 0);  // never
+}
+
 TEST_CASE("a stiffness that means nothing in the scene is not the one that is driven") {
   const std::string latch =
       "[structure]\nkind = 'hoop'\n[[forces]]\nkind = 'latch'\nstiffness = 1000\n[[forces]]\nkind = "

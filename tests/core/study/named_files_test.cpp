@@ -96,6 +96,16 @@ TEST_CASE("files of a sweep over variables are those of all values, and the scen
   CHECK(second("") == few);
   CHECK_FALSE(identity_of_both(few, more, true));
   CHECK(identity_of_both(few, few, false) == few);
+  // Files that either knows of are those of both; one that was not there may have come.
+  const std::string scene = "title = 's'\n", third = files_of_points(plan("variables.k=1,2,3"));
+  CHECK(identity_of_both(scene + third, scene + few, false) == scene + few + "# \"n_3.csv\": not there\n");
+  CHECK(identity_of_both(scene + few, scene + third, false) == scene + third);
+  std::ofstream(folder.path / "n_3.csv") << "name,x_m,y_m,z_m\n";
+  const std::string come = files_of_points(plan("variables.k=1,2,3"));
+  CHECK(identity_of_both(scene + third, scene + come, true) == scene + come);
+  CHECK_FALSE(identity_of_both(scene + third, scene + come, false));
+  CHECK_FALSE(identity_of_both(scene + come, scene + third, true));  // nor may one have gone
+  CHECK_FALSE(identity_of_both(scene + few, "title = 't'\n" + few, true));
   const SweepPlan other = plan("variables.g=1:10:1000");
   other.source.read();
   const double begin = cpu_seconds();

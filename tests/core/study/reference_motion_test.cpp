@@ -55,6 +55,14 @@ TEST_CASE("a reference tells the ladder's exact motion at any time") {
           reference.uncertainty() + round_off);
 }
 
+TEST_CASE("a run that ended before its first step has a start like any") {
+  SimulationHooks hooks;
+  hooks.cancelled = [] { return true; };
+  const Simulation run = simulate(make_model(double_pendulum()), dvm_options(3, 0.02, 1.0), hooks);
+  REQUIRE(run.trajectory.size() == 1);
+  CHECK(one_sided_at_start(run).empty());
+}
+
 TEST_CASE("the position error of a run is its distance from the exact motion, whatever its steps") {
   const exact::FourBarLadder ladder{1, 1.0};
   const auto model = make_model(ladder_structure(1, 1.0));

@@ -41,6 +41,19 @@ TEST_CASE("a scene is read again with changes behind those of the command line")
   CHECK_THROWS_WITH(plain.read({"structure.unit=11"}), Catch::Contains("did you mean 'units'"));
 }
 
+TEST_CASE("what stands where a number is looked for is told, and nothing of what is one or is not there") {
+  const SceneSource text{
+      "s.toml",
+      {},
+      std::make_shared<const std::string>("variables.n = 3\n[structure]\nkind = 'hoop'\nunits = "
+                                          "7\npost_length = 1.3\n[solver]\nmethod = 'rk4'\n"),
+      ""};
+  const Scene scene = text.read();
+  for (const char* key : {"variables.n", "structure.units", "structure.post_length", "structure.fold_angle"})
+    CHECK(other_than_number(scene, key) == "");
+  for (const char* key : {"solver.method", "structure.kind"}) CHECK(other_than_number(scene, key) == "text");
+}
+
 TEST_CASE("a file that is edited while its study runs changes none of its points") {
   namespace fs = std::filesystem;
   const fs::path file =

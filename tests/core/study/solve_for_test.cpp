@@ -104,6 +104,18 @@ TEST_CASE("a search gives a side up where runs take longer and longer") {
   // 30 times the first one's second is too long; each run takes twice as long as the one before, so that the
   // last takes 60 s at most and all of them twice that. The other side costs nothing, as x grows there.
   CHECK(time < 120);
+  // Only once its runs have taken that long in all: four of 2 s have not, in 8.5 s.
+  time = 0;
+  int below = 0;
+  const auto slow_below = [&](double x) {
+    time += x < 1 ? 2 : 1;
+    below += x < 1 ? 1 : 0;
+    return x + 0.5 * std::sin(x);
+  };
+  SolveOptions patient{.start = 1, .patience_s = 8.5, .patience_of_first = 1.5};
+  patient.clock = options.clock;
+  CHECK(solve_for(slow_below, 2 + 0.5 * std::sin(2.0), patient, {}).x == Approx(2));
+  CHECK(below == 5);
   time = 0;
   const auto reached = [&](double x) { return f(x) + (x < 1e-3 ? 1 : 0); };  // before that
   CHECK(solve_for(reached, 5.92, options, {}).value == 5.92);
@@ -119,6 +131,11 @@ TEST_CASE("a target of zero is met as well as any, and at an end that was given"
   // What is left where nothing moves, and values that rounding leaves beside the target.
   const auto energy = [](double x) { return 0.5 * x * x + 9e-57; };
   CHECK(std::abs(solve_for(energy, 0, {.start = 10}, {}).x) < 1e-14);
+  // At once, where it is nothing beside the first value: fifteen runs until then, by strides that double.
+  const auto fades = [](double x) { return x < 2 ? 2 - x : 1e-60; };
+  const Solved faded = solve_for(fades, 0, {.start = 0.3}, {});
+  CHECK(faded.x >= 2);
+  CHECK(faded.evaluations.size() < 20);
   const auto held = [](double x) { return x < 25 ? 1 - 1.1e-16 : 1.5; };
   CHECK(solve_for(held, 1, {.start = 20}, {}).evaluations.size() == 1);
   const auto twice = [](double x) { return 2 * x; };

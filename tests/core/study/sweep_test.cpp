@@ -127,6 +127,18 @@ end_time = 0.1
   CHECK(told("variables.L=1,2").starts_with("at every point: "));
   CHECK(told("variables.L=0,1,2").starts_with("at all 2 points with a run: "));  // a rod of no length is none
   CHECK(told("variables.L=0,1").starts_with("at the one point with a run: "));
+  // With the point of 1 m there already.
+  const auto told_now = [&](const char* axis) {
+    SweepPlan plan{{"one.toml", {}, text, "."}, {}, {}, {}};
+    plan.measures.push_back(find_measure("final:kinetic_energy_J"));
+    plan.axes = {parse_axis("variables.L=1")};
+    Journal journal({}, plan.columns(), plan.axes.size(), plan.number_columns());
+    run_sweep(plan, journal, {});
+    plan.axes = {parse_axis(axis)};
+    return run_sweep(plan, journal, {}).warnings.at(0);
+  };
+  CHECK(told_now("variables.L=1,2").starts_with("at the one point computed now: "));
+  CHECK(told_now("variables.L=0,1,2,3").starts_with("at all 2 points computed now with a run: "));
 }
 
 TEST_CASE("a range of one is its beginning") {
