@@ -149,32 +149,10 @@ TEST_CASE("a flight from a stop that is much shorter than a step ends when it en
       const double speed = 0.5 * a * back, rounding = 1e-15 / speed;  // of the gap, over its rate
       CHECK(run.events[0].name == "stop s");
       CHECK(run.events[0].t == Approx(back).epsilon(1e-13).margin(rounding));
-      CHECK(run.events[0].energy_lost == Approx(0.375 * speed * speed).epsilon(1e-11 + 4 * a * rounding / speed));
+      CHECK(run.events[0].energy_lost ==
+            Approx(0.375 * speed * speed).epsilon(1e-11 + 4 * a * rounding / speed));
       CHECK(run.events[1].t == Approx(std::sqrt(1.5) * back).epsilon(1e-13).margin(4 * rounding));
     }
-}
-
-// Thrown up from 0.5 m above a peg 2 cm beside its line, which it does not come closer to than 2.1 cm: in one
-// step it turns and falls past, for some milliseconds below that distance.
-TEST_CASE("what turns first and passes a stop then, between two looks, meets it") {
-  const double g = 9.81, d = 0.02, r = 0.021, meets = std::sqrt(r * r - d * d);
-  for (int k = 0; k < 12; ++k) {
-    const double v = 1.3 + 0.17 * k, at = std::sqrt(v * v + 2 * g * (0.5 - meets));
-    const Scene scene = read_scene_text(
-        "[structure]\nkind = 'custom'\nnodes = [{name = 'W', position = [0.02, 0, 0], fixed = true}, {name = "
-        "'P', position = [0, 0, 0.5], velocity = [0, 0, " +
-            exact_number(v) +
-            "], mass = 1}]\n[[constraints]]\nkind = 'line'\nnodes = ['P']\ndirection = [0, 0, 1]\n"
-            "[[constraints]]\nkind = 'length_stop'\nname = 's'\nnodes = ['W', 'P']\nmin = 0.021\n"
-            "restitution = 0.5\n[gravity]\nacceleration = [0, 0, -9.81]\n[solver]\nend_time = 2\nstep = "
-            "0.01\n",
-        "peg.toml");
-    CAPTURE(v);
-    const Simulation run = simulate_on_path(build_model(scene), scene.solver);
-    REQUIRE(!run.events.empty());
-    CHECK(run.events[0].t == Approx((v + at) / g).epsilon(1e-12));
-    CHECK(run.events[0].energy_lost == Approx(0.375 * at * at).epsilon(1e-11));
-  }
 }
 
 }  // namespace event_at_end_test

@@ -136,6 +136,9 @@ TEST_CASE("a target of zero is met as well as any, and at an end that was given"
   const Solved faded = solve_for(fades, 0, {.start = 0.3}, {});
   CHECK(faded.x >= 2);
   CHECK(faded.evaluations.size() < 20);
+  // Nothing is nothing beside what is endless.
+  const auto endless_first = [](double x) { return x < 1 ? std::numeric_limits<double>::infinity() : 5 - x; };
+  CHECK(solve_for(endless_first, 0, {.start = 0.3}, {}).x == Approx(5).epsilon(1e-11));
   const auto held = [](double x) { return x < 25 ? 1 - 1.1e-16 : 1.5; };
   CHECK(solve_for(held, 1, {.start = 20}, {}).evaluations.size() == 1);
   const auto twice = [](double x) { return 2 * x; };
