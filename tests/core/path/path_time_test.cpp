@@ -120,7 +120,7 @@ TEST_CASE("the deployed pose is the first that is come to from the stowed side b
   }
 }
 
-TEST_CASE("a pose is found on the path on either side of its start, and one beside the path is not") {
+TEST_CASE("a pose is found on the path on either side of its start and one beside the path is not") {
   for (const double at : {20.0, 200.0, -70.0}) {
     const Rod rod(at * degrees);
     const auto pose = [&](double angle, double far) {

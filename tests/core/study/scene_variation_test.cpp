@@ -41,7 +41,7 @@ TEST_CASE("a scene is read again with changes behind those of the command line")
   CHECK_THROWS_WITH(plain.read({"structure.unit=11"}), Catch::Contains("did you mean 'units'"));
 }
 
-TEST_CASE("what stands where a number is looked for is told, and nothing of what is one or is not there") {
+TEST_CASE("what stands where a number is looked for is told and nothing of what is one or is not there") {
   const SceneSource text{
       "s.toml",
       {},
