@@ -236,29 +236,6 @@ TEST_CASE("of a ring what is missing or tilted or across or on the axis or only 
                    "}";
           }).starts_with("the velocity of node "));
   }
-  // To rounding of what there is, however little that is.
-  const auto slow = [&](double load, double velocity) {
-    return told(7, [&](Ring& r) {
-      r.loads.clear();
-      for (int k = 0; k < 7; ++k) {
-        const std::string i = std::to_string(k);
-        const Vec3 odd = k == 3 ? Vec3(0.3, 0.1, 0.7) : Vec3::Zero();
-        r.loads.push_back("{nodes = ['R" + i +
-                          "'], force = " + triple(1e-6 * r.vector(k, 0.7, 0.2, -0.4) + load * odd) + "}");
-        std::string& node = named(r.nodes, "P" + i);
-        node = node.substr(0, node.find("velocity")) +
-               "velocity = " + triple(1e-6 * r.vector(k, 0, 0.3, 0.1) + velocity * odd) + "}";
-      }
-    });
-  };
-  CHECK(slow(0, 0).empty());
-  CHECK(slow(1e-14, 0).starts_with("the load on R"));
-  CHECK(slow(0, 1e-14).starts_with("the velocity of node P"));
-  // A rod from a node to another one than in all other units, as long.
-  CHECK(told(5, [](Ring& r) {
-          std::string& rod = named(r.rods, "R2-P2");
-          rod = replaced(rod, "['R2'", "['S2'");
-        }) == "rod R2-P2 has no equal a 5th of a turn on");
   CHECK(refusal(*testing::make_model(testing::hoop_structure({{"model", std::string("sector")}}))) ==
         "it is a sector already");
   // Two braces of a ring of four, across: half a turn has them in their places.
@@ -268,18 +245,6 @@ TEST_CASE("of a ring what is missing or tilted or across or on the axis or only 
                                                       k + "', 'Q" + std::to_string(k[0] - '0' + 2) +
                                                       "'], stiffness = 5, free_length = 2}");
         }) == "brace 1 has no equal a 4th of a turn on");
-  for (const bool rods : {true, false})
-    CHECK(
-        told(4, [&](Ring& r) {
-          for (const std::string k : {"0", "1"}) {
-            const std::string nodes = "nodes = ['Q" + k + "', 'Q" + std::to_string(k[0] - '0' + 2) + "']";
-            if (rods)
-              r.rods.insert(r.rods.begin() + 2, "{name = 'bar " + k + "', mass = 0.3, " + nodes + "}");
-            else
-              r.constraints.insert(r.constraints.begin() + 2,
-                                   "{name = 'bar " + k + "', kind = 'length', " + nodes + "}");
-          }
-        }) == (rods ? "rod bar 1 has no equal a 4th of a turn on" : "bar 1 has no equal a 4th of a turn on"));
   CHECK(told(5, [](Ring& r) {
           r.nodes.insert(r.nodes.begin(), "{name = 'hub', position = " +
                                               triple(r.centre + 0.3 * Vec3::UnitX()) + ", mass = 1}");
@@ -315,6 +280,48 @@ TEST_CASE("of a ring what is missing or tilted or across or on the axis or only 
                               "', mass = 1, position = " + triple(x) + "}");
           r.rods = {"{nodes = ['N0', 'N2'], mass = 0.3}", "{nodes = ['N2', 'N3'], mass = 0.3}"};
         }) == "no turn by a third of one or less takes its nodes onto each other");
+}
+
+TEST_CASE("of a ring what little is unlike and what joins other nodes than elsewhere is told") {
+  const auto told = [](int n, const std::function<void(Ring&)>& change) {
+    return refusal(*Ring{n, 0, far, false, change}.model());
+  };
+  // To rounding of what there is, however little that is.
+  const auto slow = [&](double load, double velocity) {
+    return told(7, [&](Ring& r) {
+      r.loads.clear();
+      for (int k = 0; k < 7; ++k) {
+        const std::string i = std::to_string(k);
+        const Vec3 odd = k == 3 ? Vec3(0.3, 0.1, 0.7) : Vec3::Zero();
+        r.loads.push_back("{nodes = ['R" + i +
+                          "'], force = " + triple(1e-6 * r.vector(k, 0.7, 0.2, -0.4) + load * odd) + "}");
+        std::string& node = named(r.nodes, "P" + i);
+        node = node.substr(0, node.find("velocity")) +
+               "velocity = " + triple(1e-6 * r.vector(k, 0, 0.3, 0.1) + velocity * odd) + "}";
+      }
+    });
+  };
+  CHECK(slow(0, 0).empty());
+  CHECK(slow(1e-14, 0).starts_with("the load on R"));
+  CHECK(slow(0, 1e-14).starts_with("the velocity of node P"));
+  // A rod from a node to another one than in all other units, as long.
+  CHECK(told(5, [](Ring& r) {
+          std::string& rod = named(r.rods, "R2-P2");
+          rod = replaced(rod, "['R2'", "['S2'");
+        }) == "rod R2-P2 has no equal a 5th of a turn on");
+  // Bars of a ring of four, across: half a turn has them in their places.
+  for (const bool rods : {true, false})
+    CHECK(
+        told(4, [&](Ring& r) {
+          for (const std::string k : {"0", "1"}) {
+            const std::string nodes = "nodes = ['Q" + k + "', 'Q" + std::to_string(k[0] - '0' + 2) + "']";
+            if (rods)
+              r.rods.insert(r.rods.begin() + 2, "{name = 'bar " + k + "', mass = 0.3, " + nodes + "}");
+            else
+              r.constraints.insert(r.constraints.begin() + 2,
+                                   "{name = 'bar " + k + "', kind = 'length', " + nodes + "}");
+          }
+        }) == (rods ? "rod bar 1 has no equal a 4th of a turn on" : "bar 1 has no equal a 4th of a turn on"));
 }
 
 // The angle of one sector is that of all of them; what pulls at it would pull at one alone.
