@@ -197,7 +197,8 @@ std::vector<std::string> idle_when_stepped(const SolverOptions& solver, bool str
   if (stretches)
     said.emplace_back(
         "structure.rod_model = \"quasi-static\": a stepper's x is that of rigid rods, until finish() "
-        "stretches them");
+        "stretches "
+        "them");
   return said;
 }
 
@@ -206,9 +207,6 @@ class SteppedScene {
   explicit SteppedScene(Scene scene)
       : scene_(std::move(scene)), model_(build_model(scene_)), stepper_(model_, scene_.solver) {
     said_ = start_warnings(*model_, scene_.solver);
-  }
-  std::vector<std::string> idle() const {
-    return idle_when_stepped(scene_.solver, model_->structure.quasi_static);
   }
   bool step() {
     const py::gil_scoped_release release;
@@ -323,8 +321,8 @@ class SteppedScene {
     return goes_on_ && run.status != RunStatus::failed && stepper_.time() < run.options.end_time;
   }
   std::vector<std::string> all_warnings() const {
-    std::vector<std::string> said = idle();
-    const std::vector<std::string> of_start =
+    std::vector<std::string> said = idle_when_stepped(scene_.solver, model_->structure.quasi_static);
+    const auto of_start =
         scene_.solver.adaptive ? start_warnings(*model_, scene_.solver, stepper_.swing()) : said_;
     said.insert(said.end(), of_start.begin(), of_start.end());
     said.insert(said.end(), stepper_.run().warnings.begin(), stepper_.run().warnings.end());

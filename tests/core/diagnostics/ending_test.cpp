@@ -50,9 +50,9 @@ TEST_CASE("a run that ends before the deployed pose says how far it got, rounded
 
 TEST_CASE("a run too large to look for singular poses says so") {
   for (const int windows : {149, 150}) {
-    const Simulation run =
-        run_scene("[structure]\nkind = 'four_bar_ladder'\nwindows = " + std::to_string(windows) + "\nspeed = 1\n",
-                  {"solver.end_time=0.03"});
+    const Simulation run = run_scene(
+        "[structure]\nkind = 'four_bar_ladder'\nwindows = " + std::to_string(windows) + "\nspeed = 1\n",
+        {"solver.end_time=0.03"});
     const System& system = run.trajectory.last_model().system;
     const Index size = std::max(system.constraints(), system.solved_coordinates());
     CAPTURE(windows, size);
