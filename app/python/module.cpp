@@ -197,8 +197,7 @@ std::vector<std::string> idle_when_stepped(const SolverOptions& solver, bool str
   if (stretches)
     said.emplace_back(
         "structure.rod_model = \"quasi-static\": a stepper's x is that of rigid rods, until finish() "
-        "stretches "
-        "them");
+        "stretches them");
   return said;
 }
 
