@@ -204,8 +204,9 @@ std::vector<std::string> idle_when_stepped(const SolverOptions& solver, bool str
 class SteppedScene {
  public:
   explicit SteppedScene(Scene scene)
-      : scene_(std::move(scene)), model_(build_model(scene_)), stepper_(model_, scene_.solver) {
-    said_ = start_warnings(*model_, scene_.solver);
+      : scene_(std::move(scene)), model_(build_model(scene_)), stepper_(model_, scene_.solver) {}
+  std::vector<std::string> idle() const {
+    return idle_when_stepped(scene_.solver, model_->structure.quasi_static);
   }
   bool step() {
     const py::gil_scoped_release release;
@@ -320,9 +321,8 @@ class SteppedScene {
     return goes_on_ && run.status != RunStatus::failed && stepper_.time() < run.options.end_time;
   }
   std::vector<std::string> all_warnings() const {
-    std::vector<std::string> said = idle_when_stepped(scene_.solver, model_->structure.quasi_static);
-    const auto of_start =
-        scene_.solver.adaptive ? start_warnings(*model_, scene_.solver, stepper_.swing()) : said_;
+    std::vector<std::string> said = idle();
+    const auto of_start = start_warnings(*model_, scene_.solver, stepper_.swing());
     said.insert(said.end(), of_start.begin(), of_start.end());
     said.insert(said.end(), stepper_.run().warnings.begin(), stepper_.run().warnings.end());
     return said;
@@ -343,7 +343,6 @@ class SteppedScene {
   Scene scene_;
   std::shared_ptr<const Model> model_;
   Stepper stepper_;
-  std::vector<std::string> said_;
   std::map<int, Vec3> forces_;
   bool goes_on_ = true;
   std::shared_ptr<std::mutex> use_ = std::make_shared<std::mutex>();
