@@ -58,10 +58,8 @@ bool Index1::evaluate(double t, const ConstVec& z, const ConstVec& w, MutVec acc
   return assemble(t, z, w, tension) && solve(t, w, acceleration, lambda);
 }
 
-// The matrix at z and the right-hand sides for rates that the constraints have there. acceleration and lambda
-// are worked with.
-bool Index1::move_rates_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
-                           const VectorXd& tension) {
+bool Index1::evaluate_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
+                         const VectorXd& tension) {
   if (!assemble(t, z, w, tension)) return false;
   VectorXd rate(lambda.size());
   system_.target_rate(t, rate);
@@ -69,20 +67,7 @@ bool Index1::move_rates_on(double t, const ConstVec& z, VectorXd& w, MutVec acce
   settle(VectorXd::Zero(w.size()), rate, acceleration, lambda);
   w += acceleration;
   place(t, z, w, tension);
-  return true;
-}
-
-bool Index1::evaluate_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
-                         const VectorXd& tension) {
-  return move_rates_on(t, z, w, acceleration, lambda, tension) && solve(t, w, acceleration, lambda);
-}
-
-bool Index1::evaluate_beside(double t, const ConstVec& z, const ConstVec& on, const ConstVec& w,
-                             MutVec acceleration, MutVec lambda) {
-  VectorXd rate = w;
-  if (!move_rates_on(t, on, rate, acceleration, lambda, {})) return false;
-  if (alpha_ > 0) bias_ += G_ * (2 * alpha_ * (rate - w) + alpha_ * alpha_ * (on - z));
-  return solve(t, rate, acceleration, lambda);
+  return solve(t, w, acceleration, lambda);
 }
 
 double Index1::out_of_reach(double weak) {

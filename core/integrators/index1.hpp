@@ -31,10 +31,6 @@ class Index1 {
   // The same where rates are moved first onto those that the constraints have then.
   bool evaluate_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
                    const VectorXd& tension = {});
-  // The same for a pose and rates beside the constraints, of which the errors decay as stabilise() says:
-  // `on` is the pose on them that stands for z.
-  bool evaluate_beside(double t, const ConstVec& z, const ConstVec& on, const ConstVec& w,
-                       MutVec acceleration, MutVec lambda);
   // The share of its right-hand side that the last evaluation has left, out of the rows' reach; infinite
   // where a direction is hardly in their reach, by a pivot below `weak`.
   double out_of_reach(double weak);
@@ -60,8 +56,6 @@ class Index1 {
   void place(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension);
   bool assemble(double t, const ConstVec& z, const ConstVec& w, const VectorXd& tension = {});
   bool solve(double t, const ConstVec& w, MutVec acceleration, MutVec lambda);
-  bool move_rates_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
-                     const VectorXd& tension);
   int refinements() const { return clean_ ? 40 : 8; }
   void settle(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y);
   void answer(const VectorXd& rows, VectorXd& x, VectorXd& y);

@@ -140,6 +140,15 @@ bool Projection::along_held_rows(double t, VectorXd& z) {
   return false;
 }
 
+bool Projection::rates_by_held_rows(double t, VectorXd& w) {
+  system_.target_rate(t, offset_);
+  offset_.noalias() -= G_ * w;
+  force_.setZero();
+  saddle_.solve(force_, offset_, x_, y_);
+  w += x_;
+  return w.allFinite();
+}
+
 bool Projection::velocities(double t, const VectorXd& z, VectorXd& w) {
   system_.expand(z, q_);
   system_.jacobian(q_, G_, scratch_);

@@ -27,6 +27,8 @@ class Projection {
   // as what is evaluated within a step needs. False where the iteration does not settle.
   [[nodiscard]] bool hold_rows_at(const VectorXd& z);
   [[nodiscard]] bool along_held_rows(double t, VectorXd& z);
+  // Onto the rates that these rows ask for at that pose. What they hold by rounding alone stays free.
+  [[nodiscard]] bool rates_by_held_rows(double t, VectorXd& w);
   [[nodiscard]] bool velocities(double t, const VectorXd& z, VectorXd& w);
   int iterations() const { return iterations_; }  // of the last call of positions
 

@@ -7,7 +7,8 @@
 namespace unfurl {
 
 // The classical Runge-Kutta method on the index-1 equations, z' = w, w' = a(t, z, w): stages at 0, h/2, h/2,
-// h with weights 1/6, 1/3, 1/3, 1/6. Nothing holds the constraints: they drift.
+// h with weights 1/6, 1/3, 1/3, 1/6. Nothing holds the constraints: they drift, but where redundant rows
+// contradict each other beside them (StageAccelerations::settle).
 class RungeKutta4 : public Integrator {
  public:
   explicit RungeKutta4(const System& system, double baumgarte_rate = 0.0);
@@ -16,8 +17,8 @@ class RungeKutta4 : public Integrator {
 
  protected:
   // Called with the end of a step before it is accepted: a method may move it. False: the step has failed.
-  virtual bool settle(const State& /*from*/, double /*t*/, VectorXd& /*z*/, VectorXd& /*w*/,
-                      StepReport& /*report*/) {
+  virtual bool settle(const State& /*from*/, double t, VectorXd& z, VectorXd& w, StepReport& /*report*/) {
+    accelerations_.settle(t, z, w);
     return true;
   }
   const System& system_;

@@ -39,19 +39,20 @@ void StageAccelerations::begin(const State& state) {
 // Whether the rows have more out of their reach beside the constraints than on them, leaving aside terms that
 // let errors decay. Next to a singular pose it is as much there.
 bool StageAccelerations::contradict(double t, const ConstVec& z, const ConstVec& w) const {
-  const double bound = steps_ > 1 ? weak_pivot_later : weak_pivot_at_first;
   Projection poses(system_, moving_regularisation);
   Index1 index1(system_, clean_);
   VectorXd on = z, acceleration(z.size()), lambda(system_.constraints());
   if (!index1.evaluate(t, z, w, acceleration, lambda)) return false;
-  const double beside = index1.out_of_reach(bound);
+  double bound = weak_pivot_later, beside = index1.out_of_reach(bound);
+  if (steps_ == 1 && !(beside > asked_share)) beside = index1.out_of_reach(bound = weak_pivot_at_first);
   if (!(beside > asked_share)) return false;
   for (int pass = 0; pass < 2; ++pass) {
     if (!poses.hold_rows_at(on)) return false;
     on = z;
     if (!poses.along_held_rows(t, on)) return false;
   }
-  return index1.evaluate_beside(t, z, on, w, acceleration, lambda) &&
+  VectorXd rate = w;
+  return index1.evaluate_on(t, on, rate, acceleration, lambda) &&
          index1.out_of_reach(clearer * bound) < cleared_share * std::min(beside, 1.0);
 }
 
@@ -59,7 +60,8 @@ bool StageAccelerations::evaluate(double t, const ConstVec& z, const ConstVec& w
                                   MutVec lambda) {
   if (held_) {
     on_ = z;
-    if (poses_->along_held_rows(t, on_) && index1_.evaluate_beside(t, z, on_, w, acceleration, lambda))
+    VectorXd rate = w;
+    if (poses_->along_held_rows(t, on_) && index1_.evaluate_on(t, on_, rate, acceleration, lambda))
       return true;
   }
   if (!index1_.evaluate(t, z, w, acceleration, lambda)) return false;
@@ -70,6 +72,16 @@ bool StageAccelerations::evaluate(double t, const ConstVec& z, const ConstVec& w
   ask_at_ = steps_ + wait_;
   wait_ = std::min(2 * wait_, longest_wait);
   return true;
+}
+
+void StageAccelerations::settle(double t, VectorXd& z, VectorXd& w) {
+  if (!held_) return;
+  on_ = z;
+  VectorXd rate = w;
+  if (!poses_->along_held_rows(t, on_) || !poses_->hold_rows_at(on_) || !poses_->rates_by_held_rows(t, rate))
+    return;
+  z = on_;
+  w = rate;
 }
 
 }  // namespace unfurl

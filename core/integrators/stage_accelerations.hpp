@@ -14,6 +14,8 @@ namespace unfurl {
 // them, and who keeps these holds a free motion by what is an error. From where that has been seen
 // accelerations are those of the pose and rates on the constraints that stand for the stage's. On the
 // constraints these are the same, and beside them they are smooth within a step: methods keep their order.
+// Steps end on the constraints then: from beside them errors feed on themselves, and what begins anew there,
+// as behind an event, has not seen it.
 class StageAccelerations {
  public:
   explicit StageAccelerations(const System& system, bool clean_multipliers = false);
@@ -24,6 +26,8 @@ class StageAccelerations {
   // Rows have been seen to contradict each other since begin(), which is to be called again: what the step
   // has of them is wrong.
   bool seen() const { return seen_; }
+  // The end of a step onto the constraints, from where on that has been seen.
+  void settle(double t, VectorXd& z, VectorXd& w);
 
  private:
   bool contradict(double t, const ConstVec& z, const ConstVec& w) const;
