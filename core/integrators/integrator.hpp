@@ -29,6 +29,8 @@ class Integrator {
                       VectorXd& /*w*/) const {
     return false;
   }
+  // A step of the same run has reported that rows contradict each other (StepReport).
+  virtual void expect_contradictions() {}
 };
 
 // What a method claims about itself; the conformance test checks every claim of every row.

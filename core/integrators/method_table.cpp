@@ -70,6 +70,7 @@ class Following final : public Integrator {
     return plain_->inside(start, h, share, z, w);
   }
   void restart() override { plain_->restart(); }
+  void expect_contradictions() override { plain_->expect_contradictions(); }
 
  private:
   System system_;

@@ -19,6 +19,7 @@ RungeKutta4::RungeKutta4(const System& system, double baumgarte_rate)
 StepReport RungeKutta4::step(State& state, double h) {
   StepReport report;
   accelerations_.begin(state);
+  report.contradictions = accelerations_.known();
   static constexpr double at[4] = {0.0, 0.5, 0.5, 1.0};
   for (int i = 0; i < 4; ++i) {
     z_ = state.z;

@@ -14,6 +14,7 @@ class RungeKutta4 : public Integrator {
   explicit RungeKutta4(const System& system, double baumgarte_rate = 0.0);
   StepReport step(State& state, double h) final;
   void restart() override { accelerations_.restart(); }
+  void expect_contradictions() override { accelerations_.expect_contradictions(); }
 
  protected:
   // Called with the end of a step before it is accepted: a method may move it. False: the step has failed.

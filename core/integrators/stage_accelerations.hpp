@@ -26,6 +26,9 @@ class StageAccelerations {
   // Rows have been seen to contradict each other since begin(), which is to be called again: what the step
   // has of them is wrong.
   bool seen() const { return seen_; }
+  // As if that had been seen before; and whether it has.
+  void expect_contradictions() { seen_ = !known(); }
+  bool known() const { return poses_ != nullptr; }
   // The end of a step onto the constraints, from where on that has been seen.
   void settle(double t, VectorXd& z, VectorXd& w);
 

@@ -65,7 +65,7 @@ void DenseOutput::give_back(Engine engine) {
 }
 
 State DenseOutput::between(const std::shared_ptr<const Model>& model, const State& a, const State& b,
-                           double t, int pieces) {
+                           double t, const StepReport& step) {
   const double h = t - a.t;
   if (!(h > 0)) return a;
   if (t >= b.t) return b;
@@ -76,10 +76,13 @@ State DenseOutput::between(const std::shared_ptr<const Model>& model, const Stat
     state.w += h / (b.t - a.t) * (b.w - a.w);
     return state;
   }
+  // Next to a singular pose a step loses digits that shorter ones keep.
+  int pieces = step.singular_event ? 4 : 1;
   // No step of any method need have led so far.
   if (options_.method == "dvm" && options_.stages == closest_stages && !is_short_step(a, b))
     pieces = most_pieces;
   Engine engine = borrow(model);
+  if (step.contradictions) engine.integrator->expect_contradictions();
   bool solved = false;
   for (; pieces <= most_pieces && !solved; pieces *= 2) {
     state = a;

@@ -34,10 +34,9 @@ class DenseOutput {
   explicit DenseOutput(const SolverOptions& options) : options_(options) {}
 
   // a.t <= t <= b.t, both states of `model`. Where no step to t can be solved (next to a singular pose), the
-  // cubic through both states, projected on the constraints. Next to a singular pose a step loses digits that
-  // shorter ones keep: `pieces`, how many lead to t.
+  // cubic through both states, projected on the constraints. `step`: of the one that ended in b.
   State between(const std::shared_ptr<const Model>& model, const State& a, const State& b, double t,
-                int pieces = 1);
+                const StepReport& step = {});
   const SolverOptions& options() const { return options_; }
 
  private:

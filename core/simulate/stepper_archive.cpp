@@ -74,7 +74,7 @@ void Stepper::Loop::archive(Archive& archive) {
   archive(turned_);
   for (double* x : {&target_, &part_end_, &last_step_, &swing_, &crowd_time_, &unwatched_until_, &margin_})
     archive(*x);
-  for (bool* x : {&deployed_, &ended_, &regular_}) archive(*x);
+  for (bool* x : {&deployed_, &ended_, &regular_, &contradictions_}) archive(*x);
   if (archive.reading()) model_changed();
 }
 
@@ -117,6 +117,7 @@ void Stepper::Loop::archive_states(Archive& archive) {
     for (int* x : {&report.newton_iterations, &report.factorisations, &report.right_hand_sides}) archive(*x);
     for (double* x : {&report.residual, &report.constraint_norm}) archive(*x);
     archive(report.singular_event);
+    archive(report.contradictions);
     if (archive.reading()) run_.trajectory.append(std::move(state), report);
   }
   if (n == 0) throw ArchiveError("holds no state");

@@ -38,7 +38,7 @@ std::optional<State> Stepper::Loop::locate(double h, double latest) {
   std::optional<State> reached = step_to_deployed(model(), *fresh_integrator(), now(), h, margin_);
   if (regular_ = reached.has_value(); regular_) return reached;
   const bool dvm = run_.options.method == "dvm";
-  const auto fresh = (dvm ? careful_dvm() : *find_method(run_.options.method)).make(system(), run_.options);
+  const auto fresh = dvm ? careful_dvm().make(system(), run_.options) : fresh_integrator();
   std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h, next_edge());
   if (event && event->t > latest) event.reset();
   return event;

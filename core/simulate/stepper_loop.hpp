@@ -115,7 +115,9 @@ class Stepper::Loop {
   const System& system() const { return model().system; }
   const State& now() const { return run_.trajectory.state(run_.trajectory.size() - 1); }
   std::unique_ptr<Integrator> fresh_integrator() const {
-    return find_method(run_.options.method)->make(system(), run_.options);
+    auto integrator = find_method(run_.options.method)->make(system(), run_.options);
+    if (contradictions_) integrator->expect_contradictions();
+    return integrator;
   }
 
   void begin_anew_behind_part();
@@ -243,9 +245,11 @@ class Stepper::Loop {
 
   StepReport take_step(Integrator& integrator, State& state, double h) {
     if (h < stepping::shortest * run_.options.step) return drift(system(), state, h);
+    if (contradictions_) integrator.expect_contradictions();
     const StepReport report = integrator.step(state, h);
     run_.newton_iterations += report.newton_iterations;
     run_.factorisations += report.factorisations;
+    contradictions_ = contradictions_ || report.contradictions;
     return report;
   }
 
@@ -488,6 +492,7 @@ class Stepper::Loop {
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
   bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false;
+  bool contradictions_ = false;                // told by a step's report
   double margin_ = stepping::singular_margin;  // a tenth of where the run began, if that is less
   VectorXd q_;
   std::size_t new_ = 0, part_ = 0;    // first state that was not handed over, first of the present part

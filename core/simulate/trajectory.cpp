@@ -88,8 +88,7 @@ std::size_t Trajectory::state_before(double t) const {
 State Trajectory::state_at(double t) const {
   const std::size_t i = state_before(t);
   if (i + 1 == size() || t <= time(i)) return states_[i];
-  const int pieces = reports_[i + 1].singular_event ? 4 : 1;
-  return dense_->between(part_of(i).model, states_[i], states_[i + 1], t, pieces);
+  return dense_->between(part_of(i).model, states_[i], states_[i + 1], t, reports_[i + 1]);
 }
 
 VectorXd Trajectory::positions_at(double t) const {

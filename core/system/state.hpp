@@ -39,6 +39,8 @@ struct StepReport {
   bool singular_event = false;
   // The pose at its end is so near to a singular one that what rounding leaves of it is told as a velocity.
   bool weak_end = false;
+  // Redundant rows have been seen to contradict each other beside the constraints (StageAccelerations).
+  bool contradictions = false;
   bool ok() const { return status == StepStatus::converged; }
 };
 

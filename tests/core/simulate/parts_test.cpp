@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/scene/library.hpp"
+#include "tests/support/bennett_loops.hpp"
 #include "tests/support/coulomb_oscillator.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -140,7 +141,8 @@ TEST_CASE("a run that was archived goes on to the same bits, whatever it has") {
                Case{bouncing, {"solver.method=generalized_alpha", "solver.step=0.003"}},
                Case{"hoop6", {"solver.at_deployed=latch"}},
                Case{"hoop6_sector", {"solver.adaptive=true", "solver.step=0.05", "solver.at_deployed=latch"}},
-               Case{"hoop6_motor", {}}, Case{"double_pendulum", {"solver.end_time=4"}}, Case{"pendulum", {}});
+               Case{"hoop6_motor", {}}, Case{"double_pendulum", {"solver.end_time=4"}}, Case{"pendulum", {}},
+               Case{testing::bennett_loops(0, 1, 0.0), {"solver.method=rk4", "solver.end_time=2"}});
   CAPTURE(c.scene, c.changes);
   const Whole all = in_parts(c, 37, 5);
   REQUIRE(all.archives.size() >= 2);
