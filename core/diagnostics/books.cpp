@@ -37,7 +37,7 @@ std::vector<double> energy_round_off(const Simulation& run) {
     if (q.size()) grow(reach, q.lpNorm<Eigen::Infinity>());
     // What rests at the origin has coordinates of rounding alone: of the way that its forces make in a step.
     const VectorXd mass = system.node_mass().diagonal();
-    for (Index k = 0; k < std::min(mass.size(), force.size()); ++k)
+    for (Index k = 0; k < mass.size(); ++k)
       if (mass[k] > 0) grow(reach, std::abs(force[k]) / mass[k] * run.options.step * run.options.step);
     // Of gravity and loads by themselves, which other forces may balance: sums of them are rounded, too.
     const VectorXd weight = weight_of(trajectory.model(i));

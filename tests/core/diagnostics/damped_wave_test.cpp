@@ -2,9 +2,11 @@
 // What damped elastic rods take where steps do not resolve their waves.
 #include <catch2/catch.hpp>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/diagnostics/damped_rods.hpp"
 #include "core/diagnostics/diagnostics.hpp"
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
@@ -43,6 +45,30 @@ end_time = 0.5
       for (std::size_t i = 1; i < taken.size(); ++i) CHECK(taken[i] >= taken[i - 1] - 1e-6 * most);
       CHECK(taken.back() <= (1 + 1e-6) * most);
     }
+}
+
+// Two rods that move as they like, far from the origin: c (rate of length)^2 each, c = damping_time E A / l.
+TEST_CASE("dampers of rods take what their lengths change by, wherever rods are and however they turn") {
+  const auto model = testing::model_of(R"(
+[structure]
+kind = "custom"
+rod_model = "elastic"
+damping_time = 0.003
+nodes = [{name = "A", position = [7, -3, 2], mass = 1}, {name = "B", position = [8.2, -2.1, 2.5], mass = 1},
+         {name = "C", position = [8, -2, 4], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 0.1, area = 1e-4, youngs_modulus = 7e9},
+        {nodes = ["C", "B"], mass = 0.1, area = 3e-4, youngs_modulus = 2e9}]
+)");
+  VectorXd q(9), v(9);
+  q << 7, -3, 2, 8.2, -2.1, 2.5, 8, -2, 4;
+  v << 0.3, -0.2, 0.7, 0.1, 1.4, -0.3, -0.9, 0.2, 0.5;
+  double power = 0;
+  for (const auto& [a, b, stiff] : {std::tuple{0, 1, 7e5}, {2, 1, 6e5}}) {
+    const Vec3 along = q.segment<3>(3 * b) - q.segment<3>(3 * a);
+    const double rate = along.normalized().dot(v.segment<3>(3 * b) - v.segment<3>(3 * a));
+    power += 0.003 * stiff / along.norm() * rate * rate;
+  }
+  CHECK(DampedRods(model->system).power(0.4, q, v) == Approx(power).epsilon(1e-12));
 }
 
 }  // namespace damped_wave_test

@@ -32,12 +32,25 @@ TEST_CASE("a run that ends before the deployed pose says how far it got, rounded
   // so.
   Simulation still = run_scene(ring, {"solver.end_time=0.1"});
   Diagnostics d = diagnose(still);
-  for (const auto& [fraction, said] : std::vector<std::pair<double, std::string>>{
-           {-1e-14, "0 %"}, {-0.0, "0 %"}, {1e-14, "0 %"}, {-0.002, "-0.2 %"}, {-0.0021, "-0.3 %"}}) {
+  for (const auto& [fraction, said] : std::vector<std::pair<double, std::string>>{{-1e-14, "0 %"},
+                                                                                  {-9e-10, "0 %"},
+                                                                                  {-1.1e-9, "-0.1 %"},
+                                                                                  {-0.0, "0 %"},
+                                                                                  {1e-14, "0 %"},
+                                                                                  {-0.002, "-0.2 %"},
+                                                                                  {-0.0021, "-0.3 %"}}) {
     for (Series& column : d.columns)
       if (column.name == "deployed_fraction") column.values.back() = fraction;
     CHECK(ending_note(still, d).starts_with(said + " deployed"));
   }
+  // Whatever else happened; not where it went on behind its deployed pose, nor where nothing was looked at.
+  Simulation passed = still;
+  passed.events.push_back({.name = "rests on stop", .t = 0.05, .kind = "contact"});
+  CHECK(ending_note(passed, d).starts_with("-0.3 %"));
+  passed.events.push_back({.name = "deployed", .t = 0.07, .kind = "deployed"});
+  CHECK(ending_note(passed, d).empty());
+  for (Series& column : d.columns) column.values.clear();
+  CHECK(ending_note(still, d).empty());
   // Nothing where it deployed, where there is nothing to deploy, or where it broke off.
   Simulation deployed = run_scene(ring, {"solver.end_time=6"});
   CHECK(ending_note(deployed, diagnose(deployed)).empty());

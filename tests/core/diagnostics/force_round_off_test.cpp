@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <string>
+#include <tuple>
 
 #include "tests/support/scene_run.hpp"
 
@@ -157,6 +159,30 @@ TEST_CASE("what is rounding is judged by the run and taken away one by one", "[d
   CHECK(kept(1, 0) == Approx(9.81).epsilon(1e-9));  // twice the mean of a force from 0 to m g
   CHECK(kept(2, 0) == 0.0);
   CHECK(std::isnan(kept(3, 0)));
+}
+
+// Of a tetrahedron of 6 kg whose shortest edge is sqrt(0.3^2 + 0.3^2 + 0.8^2) of its size, in steps of 0.02
+// s, 0.02 s and 0.01 s: as the header has it, masses as on the diagonal, a third of a rod's at each end.
+TEST_CASE("rounding of forces is that of the structure's size and place and speed", "[diagnostics]") {
+  const double ulp = std::numeric_limits<double>::epsilon();
+  for (const auto& [size, speed, load] :
+       {std::tuple(1.0, 1.0, 0.0), {1.0, 1e6, 0.0}, {0.01, 0.0, 0.0}, {1.0, 3.0, 700.0}}) {
+    std::string rest = "[solver]\nstep = 0.02\nend_time = 0.05\n";
+    if (load > 0)
+      for (const char* node : {"A", "B", "C", "D"})
+        rest += "[[loads]]\nnodes = ['" + std::string(node) + "']\nforce = [0, 0, 700]\n";
+    const Simulation run = testing::run_scene(drifting(size, speed, "", rest));
+    REQUIRE(run.trajectory.size() == 4);
+    const double rise = 0.5 * load * 4 / 6 * 0.05 * 0.05,
+                 fastest = std::max(speed, 0.2 * speed + load * 4 / 6 * 0.05);
+    const double reach = std::max(size + 0.05 * speed, 0.8 * size + 0.2 * 0.05 * speed + rise);
+    const double off = 64 * ulp * size + 8 * ulp * reach;
+    const double around = 64 * ulp * fastest + off / (0.05 / 3);
+    const double expected =
+        1e-12 * load + 4 * around * around / (size * std::sqrt(0.3 * 0.3 + 0.3 * 0.3 + 0.8 * 0.8));
+    INFO(size << " m, " << speed << " m/s, " << load << " N");
+    CHECK(force_round_off(run) / expected == Approx(1).epsilon(1e-6));
+  }
 }
 
 }  // namespace unfurl::force_round_off_test

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <vector>
 
 #include "core/path/path_run.hpp"
+#include "core/simulate/initial_state.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
@@ -229,6 +231,52 @@ end_time = 0.1
     INFO(name);
     for (const double unique : d.at(name).values) CHECK(unique == 1.0);
   }
+}
+
+// Frictions come first, of a hinge by its pin alone too, then both sides of a stop and the cable that is
+// drawn.
+TEST_CASE("rows of what rests are told apart by what it is") {
+  const auto model = testing::model_of(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "E", position = [-1, 0, 0], fixed = true},
+         {name = "A", position = [1, 0, 0], mass = 1}, {name = "B", position = [0, 1, 0], mass = 1}]
+rods = [{nodes = ["O", "A"], mass = 1}]
+[[forces]]
+kind = "friction"
+nodes = ["A", "O", "E"]
+axis = [0, 0, 1]
+kinetic = 0
+pin_friction = 0.2
+pin_radius = 0.01
+[[forces]]
+kind = "friction"
+nodes = ["B"]
+direction = [0, 1, 0]
+kinetic = 2
+[[constraints]]
+kind = "coordinate_stop"
+nodes = ["B"]
+direction = [0, 1, 0]
+min = 0.2
+max = 1.7
+[[constraints]]
+kind = "cable"
+nodes = ["A", "B"]
+motion = "rate"
+rate = -0.1
+)");
+  const RestingRows rows(*model);
+  const State start = initial_state(model->structure, model->system).state;
+  CHECK(rows.at(start, nullptr, 0.01).size() == 5);
+  CHECK(rows.cables({1, 1, 1, 1, 1}) == std::vector{-1, -1, -1, -1, 2});
+  CHECK(rows.cables({1, 0, 0, 1, 1}) == std::vector{-1, -1, 2});
+  CHECK(rows.cables({0, 0, 0, 0, 0}).empty());
+  const std::vector<Measure> measures = rows.measures({1, 0, 0, 1, 1});
+  REQUIRE(measures.size() == 3);
+  CHECK(measures[0].kind == MeasureKind::angle);
+  CHECK(measures[1].kind == MeasureKind::coordinate);
+  CHECK(measures[2].kind == MeasureKind::combination);
 }
 
 }  // namespace resting_rows_test

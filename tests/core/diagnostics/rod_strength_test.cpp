@@ -166,4 +166,39 @@ TEST_CASE("every family with a section area takes a modulus, which leaves braces
   CHECK(families_with == 9);
 }
 
+// Forces that are made up, of two rods of 1 and 4 cm^2 and one that is rigid, at three states.
+TEST_CASE("the worst rod is the first that bears most of all, at whichever state") {
+  const Simulation run = testing::run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], mass = 1}, {name = "B", position = [1, 0, 0], mass = 1},
+         {name = "C", position = [1, 1, 0], mass = 1}, {name = "D", position = [1, 1, 1], mass = 1}]
+rods = [{nodes = ["A", "B"], mass = 1, area = 1e-4, youngs_modulus = 7e10},
+        {nodes = ["B", "C"], mass = 1, area = 4e-4, youngs_modulus = 7e10}, {nodes = ["C", "D"], mass = 1}]
+[solver]
+step = 0.05
+end_time = 0.1
+)");
+  Diagnostics d = diagnose(run);
+  REQUIRE(d.t.size() == 3);
+  const auto worst = [&](std::vector<double> forces) {
+    d.axial_force = Eigen::Map<Eigen::Matrix3d>(forces.data()).transpose();
+    return worst_rod(run.trajectory.structure(), d, axial_stress);
+  };
+  const WorstRod first = worst({3, -900, 7, 100, 20, 8000, -200, 890, 9});
+  CHECK(first.rod == 1);
+  CHECK(first.value == Approx(-900 / 4e-4).epsilon(1e-14));
+  CHECK(first.t == 0);
+  const WorstRod last = worst({3, -900, 7, 100, 20, 8000, -300, 890, 9});
+  CHECK(last.rod == 0);
+  CHECK(last.value == Approx(-300 / 1e-4).epsilon(1e-14));
+  CHECK(last.t == d.t[2]);
+  CHECK(worst({5, 20, 7, 5, 20, 7, -5, -20, 9}).t == 0);
+  const double nan = std::nan("");
+  const WorstRod known = worst({3, nan, 7, 100, 20, 8000, nan, 890, 9});
+  CHECK(known.rod == 1);
+  CHECK(known.t == d.t[2]);
+  CHECK(!known.unique);
+}
+
 }  // namespace rod_strength_test
