@@ -13,8 +13,8 @@ namespace {
 // ones end some 1e-9 of a step off.
 constexpr double together = 1e-9;
 
-double one_time(double t, double step) {
-  return std::max(together * step, 4 * std::numeric_limits<double>::epsilon() * std::abs(t));
+double one_time(double t, double step) {  // t is not below 0
+  return std::max(together * step, 4 * std::numeric_limits<double>::epsilon() * t);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST_CASE("a turn of the whole is seen from a degree on, deploying is not") {
     VectorXd q(model->system.coordinates());
     model->system.expand(state.z, q);
     const Eigen::AngleAxisd turn(degrees * std::numbers::pi / 180, axis);
-    for (Index k = 0; k < q.size(); k += 3) q.segment<3>(k) = turn * Vec3(q.segment<3>(k));
+    for (Index k = 0; k < q.size(); k += 3) q.segment<3>(k) = turn * Vec3(q.segment<3>(k)) + Vec3(5, -3, 2);
     state.z = model->system.reduce(q);
     return !TurnedFrame(model->structure).at(model->system, state).empty();
   };
