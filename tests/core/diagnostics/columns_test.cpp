@@ -149,7 +149,7 @@ TEST_CASE("a ring's fold angle, its rate and its share are one and the same moti
 }
 
 // Two wheels that have nothing to do with each other, each turned by its motor more than once round.
-TEST_CASE("motors turn what is theirs, alone or beside each other") {
+TEST_CASE("motors turn what is theirs alone or beside each other") {
   const auto wheel = [](const std::string& name, double at, double radius, double torque, double speed) {
     const auto text = [](double x) { return std::to_string(x); };
     return std::pair{

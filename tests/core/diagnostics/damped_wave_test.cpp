@@ -48,7 +48,7 @@ end_time = 0.5
 }
 
 // Two rods that move as they like, far from the origin: c (rate of length)^2 each, c = damping_time E A / l.
-TEST_CASE("dampers of rods take what their lengths change by, wherever rods are and however they turn") {
+TEST_CASE("dampers of rods take what their lengths change by wherever they are and however they turn") {
   const auto model = testing::model_of(R"(
 [structure]
 kind = "custom"

@@ -47,7 +47,7 @@ DrivenTables tables(double begin, double size, double rounded_to) {
 
 // Of u^3 (10 - 15 u + 6 u^2) the work against inertia is of degree 7, two beyond three Gauss points, whose
 // error is 1e-9 here; the spline's second derivative is 1e-6 off.
-TEST_CASE("steps follow a table of a smooth motion, whichever way and whenever it goes") {
+TEST_CASE("steps follow a table of a smooth motion whichever way and whenever it goes") {
   for (const double begin : {0.0, 3.25})
     for (const double size : {1.0, -1.0, 0.004, -900.0}) {
       const DrivenTables smooth = tables(begin, size, 0), rounded = tables(begin, size, 1e-4);

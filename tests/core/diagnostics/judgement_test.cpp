@@ -287,7 +287,7 @@ TEST_CASE("what rounding can do to a balance grows until the end of a run") {
   CHECK(warnings(j)[0].find("take a smaller solver.step") != std::string::npos);
 }
 
-TEST_CASE("states that are shown without what rods give are told once, and by themselves") {
+TEST_CASE("states that are shown without what rods give are told once and by themselves") {
   Judged j{testing::run_scene(R"(
 [structure]
 kind = "custom"

@@ -61,7 +61,7 @@ end_time = 4
 }
 
 // Between states a reaction goes straight on, as far as they tell: its least size there by 2001 points.
-TEST_CASE("a reaction dips between states where a straight line does, in the three lowest such steps") {
+TEST_CASE("a reaction dips between states where a straight line does and in the three lowest such steps") {
   for (const double phase : {0.4, 1.3, 2.9, 4.6}) {
     Diagnostics d;
     for (const char* name : {"S.reaction_N", "S.reaction_x_N", "S.reaction_y_N", "S.reaction_z_N"})

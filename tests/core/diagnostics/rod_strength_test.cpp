@@ -167,7 +167,7 @@ TEST_CASE("every family with a section area takes a modulus, which leaves braces
 }
 
 // Forces that are made up, of two rods of 1 and 4 cm^2 and one that is rigid, at three states.
-TEST_CASE("the worst rod is the first that bears most of all, at whichever state") {
+TEST_CASE("the worst rod is the first that bears most of all at whichever state") {
   const Simulation run = testing::run_scene(R"(
 [structure]
 kind = "custom"

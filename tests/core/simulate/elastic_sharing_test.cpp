@@ -46,7 +46,7 @@ Vec3 given(double t) {  // of degree 4
 }  // namespace
 
 // The polynomial of degree 4 through the last five changes is the changes.
-TEST_CASE("rods share by their least energy, and at a limit as the motion before it tends to") {
+TEST_CASE("rods share by their least energy and at a limit as the motion before it tends to") {
   const auto model = testing::model_of(tripod);
   REQUIRE(model->system.constraints() == 3);
   VectorXd q(model->system.coordinates());
