@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <string>
 #include <unordered_map>
 
 #include "core/math/linear_elimination.hpp"
@@ -24,6 +25,15 @@ constexpr int fewest_sectors = 3;
 
 std::size_t slot(int i) {
   return static_cast<std::size_t>(i);
+}
+
+// "a 5th", "an 8th", "a 23rd"
+std::string part_of_turn(int order) {
+  const std::string n = std::to_string(order);
+  const bool vowel = n.front() == '8' || order == 11 || order == 18, teen = order / 10 % 10 == 1;
+  static constexpr std::array ends{"th", "st", "nd", "rd"};
+  const int last = order % 10;
+  return (vowel ? "an " : "a ") + n + (teen || last > 3 ? "th" : ends[slot(last)]);
 }
 
 // Nodes by place, to within a tolerance.
@@ -95,10 +105,12 @@ class Trial {
   }
 
   // Throws what is unlike of rods that are nearly so.
-  void nearly_alike() const {
+  void nearly_alike() {
     turned_rods();
     throw SectorRefused("its nodes are not quite where a turn takes others");
   }
+
+  std::size_t alike() const { return alike_; }  // entries, before it was refused
 
   Symmetry entries(const System& system) {
     found_.nodes = images(
@@ -118,7 +130,7 @@ class Trial {
 
  private:
   [[noreturn]] void unlike(const std::string& what) const {
-    throw SectorRefused(what + " has no equal a " + std::to_string(found_.order) + "th of a turn on");
+    throw SectorRefused(what + " has no equal " + part_of_turn(found_.order) + " of a turn on");
   }
 
   // The cycles of a permutation: all of n entries, or of one that acts on the whole (where `whole` asks).
@@ -140,7 +152,7 @@ class Trial {
     return out;
   }
 
-  void at_nodes() const {
+  void at_nodes() {
     std::vector<Vec3> load(structure_.nodes.size(), Vec3::Zero());
     double largest = 0;
     for (const Load& l : structure_.loads) load[slot(l.node)] += l.force;
@@ -163,6 +175,7 @@ class Trial {
       if (node.mass != next.mass) unlike("the mass of node " + node.name);
       if (node.ghost) throw SectorRefused("a motor has a number of its own: " + node.name);
       if (differs(i, velocities, fastest)) unlike("the velocity of node " + odd(i, velocities, fastest));
+      ++alike_;
     }
     if (!((step_.turn * structure_.gravity - structure_.gravity).norm() <=
           turned_share * structure_.gravity.norm()))
@@ -178,7 +191,7 @@ class Trial {
   // For each entry the one that it is turned onto.
   template <class Entry, class Turned, class Key, class Name>
   std::vector<int> onto(const std::vector<Entry>& all, const Turned& turned, const Key& key,
-                        const Name& name) const {
+                        const Name& name) {
     std::map<std::vector<int>, std::vector<int>> by_key;
     for (std::size_t i = 0; i < all.size(); ++i) by_key[key(all[i])].push_back(static_cast<int>(i));
     std::vector<int> to(all.size(), -1);
@@ -190,6 +203,7 @@ class Trial {
           std::find_if(there.begin(), there.end(), [&](int j) { return same(image, all[slot(j)], size_); });
       if (equal == there.end()) continue;
       to[i] = *equal;
+      ++alike_;
       is_image[slot(*equal)] = true;
       there.erase(equal);
     }
@@ -200,7 +214,7 @@ class Trial {
     unlike(name(all[static_cast<std::size_t>(none - to.begin())]));
   }
 
-  std::vector<int> turned_rods() const {
+  std::vector<int> turned_rods() {
     return onto(
         structure_.rods,
         [&](Rod rod) {
@@ -332,6 +346,7 @@ class Trial {
   double size_;
   Symmetry found_;
   NodeTurn step_;
+  std::size_t alike_ = 0;
   bool uses_fold_ = false;
 };
 
@@ -387,7 +402,8 @@ Symmetry find_symmetry(const Structure& structure, const System& system) {
   double size = 0;
   for (const Node& node : structure.nodes) size = std::max(size, (node.position - mean).norm());
   if (mean.norm() <= 1e3 * turned_share * size) mean.setZero();
-  std::optional<SectorRefused> why;
+  std::optional<SectorRefused> why;  // of the turn that got furthest
+  std::size_t furthest = 0;
   for (const double share : {turned_share, nearly_share}) {
     const Places places(structure, share * size);
     for (const Vec3& axis : {Vec3::UnitZ().eval(), Vec3::UnitX().eval(), Vec3::UnitY().eval()}) {
@@ -400,7 +416,7 @@ Symmetry find_symmetry(const Structure& structure, const System& system) {
           if (share > turned_share) trial.nearly_alike();
           return trial.entries(system);
         } catch (const SectorRefused& refused) {
-          if (!why) why = refused;
+          if (!why || trial.alike() > furthest) why = refused, furthest = trial.alike();
         }
       }
     }

@@ -14,6 +14,7 @@
 #include "core/study/table.hpp"
 #include "core/study/tolerance.hpp"
 #include "tests/support/models.hpp"
+#include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
 
@@ -426,6 +427,28 @@ TEST_CASE("a ring of general entries moves as one of its sectors does") {
     REQUIRE(a.size() == b.size());
     if (a.size() > 0) CHECK((a - b).cwiseAbs().maxCoeff() <= 0.01 * b.cwiseAbs().maxCoeff() + 1e-12);
   }
+}
+
+// Velocities in turn up and down: it is a ring of four, as which it would be solved but for one thing.
+TEST_CASE("of the turns that a ring might have the one that gets furthest tells what it lacks") {
+  const auto told = [](const std::string& change) {
+    return refusal(
+        *testing::model_of("[variables]\nn = 8\n[structure]\nkind = 'custom'\n"
+                           "[[structure.nodes]]\nrepeat = {i = '0:n'}\nname = 'P{i}'\nmass = 1\n"
+                           "position = ['=cos(2*pi*i/n)', '=sin(2*pi*i/n)', 0]\n"
+                           "velocity = [0, 0, '=1-2*(i%2)']\n"
+                           "[[structure.rods]]\nrepeat = {i = '0:n'}\nmass = 0.25\n"
+                           "nodes = ['P{i}', 'P{(i+1) % n}']\n[[forces]]\nkind = 'spring'\n"
+                           "repeat = {i = '0:n'}\nnodes = ['P{i}', 'P{(i+2) % n}']\n"
+                           "stiffness = 50\n",
+                           {change}));
+  };
+  CHECK(told("solver.step=0.01").empty());
+  CHECK(told("structure.nodes.P4.mass=0.6") == "the mass of node P2 has no equal a 4th of a turn on");
+  CHECK(told("forces[3].stiffness=50.1").ends_with(" has no equal a 4th of a turn on"));
+  CHECK(told("gravity.acceleration=[1,0,-9.81]") == "gravity does not act along the ring's axis");
+  CHECK(told("structure.nodes.P3.velocity=[0,0,3]").ends_with(" has no equal a 4th of a turn on"));
+  CHECK(told("structure.nodes.P5.position=[-0.705,-0.709,0]").ends_with(" has no equal an 8th of a turn on"));
 }
 
 }  // namespace symmetry_test
