@@ -39,12 +39,12 @@ void StageAccelerations::begin(const State& state) {
 // Whether the rows have more out of their reach beside the constraints than on them, leaving aside terms that
 // let errors decay. Next to a singular pose it is as much there.
 bool StageAccelerations::contradict(double t, const ConstVec& z, const ConstVec& w) const {
+  const double bound = steps_ > 1 ? weak_pivot_later : weak_pivot_at_first;
   Projection poses(system_, moving_regularisation);
   Index1 index1(system_, clean_);
   VectorXd on = z, acceleration(z.size()), lambda(system_.constraints());
   if (!index1.evaluate(t, z, w, acceleration, lambda)) return false;
-  double bound = weak_pivot_later, beside = index1.out_of_reach(bound);
-  if (steps_ == 1 && !(beside > asked_share)) beside = index1.out_of_reach(bound = weak_pivot_at_first);
+  const double beside = index1.out_of_reach(bound);
   if (!(beside > asked_share)) return false;
   for (int pass = 0; pass < 2; ++pass) {
     if (!poses.hold_rows_at(on)) return false;
