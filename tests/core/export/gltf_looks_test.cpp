@@ -25,10 +25,14 @@ namespace fs = std::filesystem;
 namespace {
 
 // Five bays of a ring with the hinges' forces, and another of half the size on one node.
+std::string ring(const std::string& hinge_force) {
+  return "[structure]\nkind = 'hoop'\nmodel = 'sector'\nunits = 5\nhinge_force = " + hinge_force +
+         "\n[solver]\nstep = 0.02\nend_time = 0.14\n";
+}
+
 struct Shown {
-  Simulation run = testing::run_scene(
-      "[structure]\nkind = 'hoop'\nmodel = 'sector'\nunits = 5\nhinge_force = 37\n[solver]\nstep = "
-      "0.02\nend_time = 0.14\n");
+  explicit Shown(const std::string& scene = ring("37")) : run(testing::run_scene(scene)) {}
+  Simulation run;
   const Structure& structure = run.trajectory.structure();
   ExportedLooks looks;
   fs::path folder = fs::temp_directory_path() / ("unfurl_looks_" + std::to_string(::getpid()));
@@ -48,10 +52,7 @@ Vec3 point(const VectorXd& pose, int node) {
   return pose.segment<3>(3 * node);
 }
 
-}  // namespace
-
-TEST_CASE("glTF: every load is an arrow that goes with its node and points along its force") {
-  const Shown shown;
+void check_arrows(const Shown& shown) {
   const testing::Glb glb = shown.glb();
   const auto& nodes = glb.json["nodes"];
   const VectorXd last = shown.run.trajectory.positions_at(0.14);
@@ -94,6 +95,13 @@ TEST_CASE("glTF: every load is an arrow that goes with its node and points along
   CHECK(arrows > 0);
 }
 
+}  // namespace
+
+TEST_CASE("glTF: every load is an arrow that goes with its node and points along its force") {
+  check_arrows(Shown());
+  check_arrows(Shown(ring("0.0037")));
+}
+
 TEST_CASE("glTF: a group has the material that pictures give it") {
   Shown shown;
   const std::string group = shown.structure.rods.front().group;
@@ -108,6 +116,30 @@ TEST_CASE("glTF: a group has the material that pictures give it") {
     } else {
       CHECK(pbr["baseColorFactor"][0] != 0.61);
     }
+  }
+}
+
+TEST_CASE("glTF: groups beyond the sixth have the first six colours again darker and paler") {
+  std::string nodes = "{name = 'N0', position = [0, 0, 0], fixed = true}", rods;
+  for (int k = 0; k < 18; ++k) {
+    const std::string i = std::to_string(k), j = std::to_string(k + 1);
+    nodes += ", {name = 'N" + j + "', position = [" + j + ", 0, 0.3]}";
+    rods += "{nodes = ['N" + i + "', 'N" + j + "'], mass = 1, group = 'g" + i + "'}, ";
+  }
+  const Shown shown("[structure]\nkind = 'custom'\nnodes = [" + nodes + "]\nrods = [" + rods +
+                    "]\n[solver]\nstep = 0.02\nend_time = 0.04\n");
+  const testing::Glb glb = shown.glb();
+  std::map<std::string, std::vector<double>> colour;
+  for (const auto& material : glb.json["materials"])
+    colour[material["name"]] = material["pbrMetallicRoughness"]["baseColorFactor"].get<std::vector<double>>();
+  for (int k = 0; k < 6; ++k) {
+    const auto group = [&](int n) {
+      return Eigen::Map<const Vec3>(colour.at("g" + std::to_string(n)).data());
+    };
+    for (int other = 0; other < k; ++other) CHECK((group(k) - group(other)).norm() > 0.1);
+    CHECK((group(k + 6).array() <= group(k).array()).all());
+    CHECK(group(k + 6).sum() < 0.5 * group(k).sum());
+    CHECK(group(k + 12).sum() > 1.2 * group(k).sum());
   }
 }
 
