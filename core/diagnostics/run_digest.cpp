@@ -31,7 +31,8 @@ bool looked_for(std::string_view name, bool largest) {
         "latch_force_max_N", "latch_torque_max_N_m", "kinetic_energy_J"})
     if (name == known) return largest;
   if (name == "axial_force_min_N" || name == "axial_stress_min_Pa") return !largest;
-  return name.ends_with(".torque_N_m") || name.ends_with(".force_N") || name.ends_with(".power_W");
+  return name.ends_with(".torque_N_m") || name.ends_with(".force_N") || name.ends_with(".power_W") ||
+         name.ends_with(".energy_J");
 }
 
 // Whether sign times values may go beyond the most that is known where they are looked at more closely: they

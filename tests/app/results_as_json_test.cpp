@@ -50,7 +50,7 @@ void check_same(const Json& rows, const std::string& table) {
 
 }  // namespace
 
-TEST_CASE("--json of studies has the numbers of their tables and nothing else on standard output") {
+TEST_CASE("studies with --json print the numbers of their tables and nothing else") {
   const ScratchDirectory dir;
   const ProgramResult sweep = run_program({"sweep", "four_bar", "--vary", "solver.step=0.01,0.02",
                                            "--measure", "peak_speed,peak_rod_force", "-o", dir / "sweep",
