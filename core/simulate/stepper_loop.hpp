@@ -333,16 +333,10 @@ class Stepper::Loop {
       if (sides_.is_stop(i) && !change.strikes(i))
         std::ranges::copy(sides_.events(i, start_), std::back_inserter(run_.events));
     const bool struck = !change.impacts.empty();  // the state before it stays
-    if (sides_.any_active()) {
-      const std::shared_ptr<const Model> next = sides_.model(*base_);
-      State state = hand_over(*base_, change.state, *next).state;
-      for (std::size_t i = 0; i < sides_.stops().size(); ++i)  // from where the scene's digits leave it
-        if (sides_.active(i) && std::abs(sides_.stops().gap(i, next->system, state)) > sides_.touching(i))
-          project(next->system.at(state), state);
-      enter(next, std::move(state), struck);
-    } else if (struck) {
+    if (sides_.any_active())
+      set_model(sides_.model(*base_), change.state, struck);
+    else if (struck)
       append_after_impulse(hand_over(*base_, change.state, model()).state);
-    }
   } catch (const CannotFactorise& error) {
     ended_ = true, fail(error.what());
   }

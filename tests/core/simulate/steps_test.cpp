@@ -263,11 +263,9 @@ end_time = 0.1
   CHECK(run(0.1, 4000, 0.1).steps <= 100);
 }
 
-// What stands still or flies until an event: a mass on a spring and a rod that a blow sets in motion, a mass
-// that a cable throws back, one on a spring that friction lets go. The rest of the step planned before would
-// be one of 1 to 10 rad. By closed forms, to order 4 in turn.
-TEST_CASE("adaptive steps follow what an event within a step begins") {
-  const std::string begin = R"([structure]
+namespace {
+
+const std::string begin = R"([structure]
 kind = "custom"
 [[structure.nodes]]
 name = "O"
@@ -282,9 +280,9 @@ adaptive = true
 step = 0.01
 end_time = 0.1
 )",
-                    line = "[[constraints]]\nkind = \"line\"\nnodes = [\"P\"]\ndirection = [1, 0, 0]\n",
-                    spring = "[[forces]]\nkind = \"spring\"\nnodes = [\"O\", \"P\"]\nstiffness = 1e6\n",
-                    rod = R"([[structure.rods]]
+                  line = "[[constraints]]\nkind = \"line\"\nnodes = [\"P\"]\ndirection = [1, 0, 0]\n",
+                  spring = "[[forces]]\nkind = \"spring\"\nnodes = [\"O\", \"P\"]\nstiffness = 1e6\n",
+                  rod = R"([[structure.rods]]
 nodes = ["O", "P"]
 mass = 0
 [[constraints]]
@@ -292,7 +290,7 @@ kind = "plane"
 nodes = ["P"]
 normal = [0, 0, 1]
 )",
-                    hammer = R"([[structure.nodes]]
+                  hammer = R"([[structure.nodes]]
 name = "H"
 position = [0.45, 0, 0]
 velocity = [8.91, 0, 0]
@@ -308,13 +306,13 @@ direction = [1, 0, 0]
 min = 0.05
 restitution = 0.8
 )",
-                    cable = R"([[forces]]
+                  cable = R"([[forces]]
 kind = "cable"
 nodes = ["O", "P"]
 axial_stiffness = 1.45e6
 length = 1.45
 )",
-                    friction = R"([[forces]]
+                  friction = R"([[forces]]
 kind = "friction"
 nodes = ["O", "P"]
 direction = [1, 0, 0]
@@ -327,6 +325,13 @@ force = [4e5, 0, 0]
 times = [0, 1]
 values = [0, 1]
 )";
+
+}  // namespace
+
+// What stands still or flies until an event: a mass on a spring and a rod that a blow sets in motion, a mass
+// that a cable throws back, one on a spring that friction lets go. The rest of the step planned before would
+// be one of 1 to 10 rad. By closed forms, to order 4 in turn.
+TEST_CASE("adaptive steps follow what an event within a step begins") {
   const double omega = std::sqrt(1e6 / 1.3), struck = 0.39 * 1.8 / 1.69 * 8.91;  // behind the blow [m/s]
   // m x'' + k x = 4e5 t - 5e3 from rest at 0.05 s: with s the time from there and x_0 = 0.015, r = 0.4 m/s
   // the place and rate of balance, x' = r + x_0 omega sin - r cos, zero at tan(omega s / 2) = -x_0 omega / r.
