@@ -265,7 +265,7 @@ end_time = 0.1
 
 namespace {
 
-const std::string begin = R"([structure]
+const std::string at_start = R"([structure]
 kind = "custom"
 [[structure.nodes]]
 name = "O"
@@ -280,9 +280,9 @@ adaptive = true
 step = 0.01
 end_time = 0.1
 )",
-                  line = "[[constraints]]\nkind = \"line\"\nnodes = [\"P\"]\ndirection = [1, 0, 0]\n",
-                  spring = "[[forces]]\nkind = \"spring\"\nnodes = [\"O\", \"P\"]\nstiffness = 1e6\n",
-                  rod = R"([[structure.rods]]
+                  on_line = "[[constraints]]\nkind = \"line\"\nnodes = [\"P\"]\ndirection = [1, 0, 0]\n",
+                  on_spring = "[[forces]]\nkind = \"spring\"\nnodes = [\"O\", \"P\"]\nstiffness = 1e6\n",
+                  on_rod = R"([[structure.rods]]
 nodes = ["O", "P"]
 mass = 0
 [[constraints]]
@@ -290,7 +290,7 @@ kind = "plane"
 nodes = ["P"]
 normal = [0, 0, 1]
 )",
-                  hammer = R"([[structure.nodes]]
+                  with_hammer = R"([[structure.nodes]]
 name = "H"
 position = [0.45, 0, 0]
 velocity = [8.91, 0, 0]
@@ -306,13 +306,13 @@ direction = [1, 0, 0]
 min = 0.05
 restitution = 0.8
 )",
-                  cable = R"([[forces]]
+                  on_cable = R"([[forces]]
 kind = "cable"
 nodes = ["O", "P"]
 axial_stiffness = 1.45e6
 length = 1.45
 )",
-                  friction = R"([[forces]]
+                  with_friction = R"([[forces]]
 kind = "friction"
 nodes = ["O", "P"]
 direction = [1, 0, 0]
@@ -341,18 +341,19 @@ TEST_CASE("adaptive steps follow what an event within a step begins") {
     std::vector<std::string> changes;
     double x;  // at the end
   };
-  for (const Case& c :
-       {Case{begin + line + spring + hammer, {}, 1 + struck / omega * std::sin(omega * (0.1 - 0.5 / 8.91))},
-        Case{begin + rod + hammer,
-             {"structure.nodes.P.position=[0, 0.1, 0]", "structure.nodes.H.position=[-0.5, 0.1, 0]",
-              "solver.end_time=0.06"},
-             0.1 * std::sin(struck / 0.1 * (0.06 - 0.45 / 8.91))},
-        Case{begin + line + cable,
-             {"structure.nodes.P.velocity=[7.77, 0, 0]"},
-             1.45 - 7.77 * (0.1 - 0.45 / 7.77 - pi / omega)},
-        Case{begin + line + spring + friction,
-             {},
-             1 + x0 + r * s - x0 * std::cos(omega * s) - r / omega * std::sin(omega * s)}}) {
+  for (const Case& c : {Case{at_start + on_line + on_spring + with_hammer,
+                             {},
+                             1 + struck / omega * std::sin(omega * (0.1 - 0.5 / 8.91))},
+                        Case{at_start + on_rod + with_hammer,
+                             {"structure.nodes.P.position=[0, 0.1, 0]",
+                              "structure.nodes.H.position=[-0.5, 0.1, 0]", "solver.end_time=0.06"},
+                             0.1 * std::sin(struck / 0.1 * (0.06 - 0.45 / 8.91))},
+                        Case{at_start + on_line + on_cable,
+                             {"structure.nodes.P.velocity=[7.77, 0, 0]"},
+                             1.45 - 7.77 * (0.1 - 0.45 / 7.77 - pi / omega)},
+                        Case{at_start + on_line + on_spring + with_friction,
+                             {},
+                             1 + x0 + r * s - x0 * std::cos(omega * s) - r / omega * std::sin(omega * s)}}) {
     INFO(c.scene);
     const auto error = [&](double turn) {
       std::vector<std::string> changes = c.changes;
