@@ -32,6 +32,9 @@ constexpr double smooth_force = 1e-2;
 constexpr double short_enough = 2.3e-3;
 // Released at rest from the sine s_0, time goes like sqrt(1 - s / s_0): samples keep well away from that.
 constexpr double from_start = 0.25;
+// Samples lie no farther out than this share of where the run last switched, or time had an edge. Where they
+// then say less of the pose than this of its rates, those behind it may tell more.
+constexpr double from_switch = 0.95, well_known = 1e-10;
 constexpr int most_stations = 200;
 // A share of the multipliers that poses next to the deployed one must agree to.
 constexpr double most_open = 1e-5;
@@ -70,40 +73,82 @@ VectorXd at_zero(const std::vector<Sample>& samples, const VectorXd& shares, Vec
 
 class Locator {
  public:
-  Locator(const Trajectory& trajectory, Integrator& integrator, double h, double edge)
+  Locator(const Trajectory& trajectory, Integrator& integrator, double h, std::size_t first, double edge)
       : trajectory_(trajectory),
         integrator_(integrator),
         h_(h),
+        first_(first),
         edge_(edge),
         followed_(trajectory.last_model().system),
         index1_(followed_, true) {}
 
   std::optional<State> locate() {
-    const double start = sine(trajectory_.state(0));
+    if (!find_samples()) return std::nullopt;
+    return extrapolate();
+  }
+
+  // At a time before the pose, next to it.
+  std::optional<State> locate_before(double t) {
+    if (!find_samples() || side_ < 0) return std::nullopt;
+    for (Sample& sample : samples_) sample.sine = t - sample.state.t;
+    if (std::ranges::any_of(samples_, [](const Sample& s) { return !(s.sine > 0); })) return std::nullopt;
+    const VectorXd shares = shares_at_zero(samples_, static_cast<int>(samples_.size()) - 1);
+    State out = samples_.back().state;
+    out.t = t;
+    out.z = at_zero(samples_, shares, &State::z);
+    out.w = at_zero(samples_, shares, &State::w);
+    extrapolate_tension(out);
+    if (!out.z.allFinite()) return std::nullopt;
+    fit(out);
+    samples_ = {};
+    keep(0, std::move(out));
+    if (samples_.empty()) return std::nullopt;
+    samples_.back().state.t = t;
+    return samples_.back().state;
+  }
+
+ private:
+  bool find_samples() {
     find_resolved();
-    std::vector<Sample> best;
+    const double start = sine(trajectory_.state(0)), room = sine(trajectory_.state(first_));
+    const double far = std::min(farthest, from_start * start);
+    const bool barred = first_ > 0 && from_switch * room < far;
     double least = std::numeric_limits<double>::infinity();
-    for (double far = reach(std::min(farthest, from_start * start));; far *= 0.25) {
+    if (!barred || from_switch * room > smallest_farthest) least = search(barred ? from_switch * room : far);
+    if (barred && !(least < well_known)) {
+      std::vector<Sample> before = std::move(best_);
+      side_ = -1;
+      stations_.clear();
+      if (!(search(farthest) < least)) {
+        best_ = std::move(before);
+        side_ = 1;
+      }
+    }
+    samples_ = std::move(best_);
+    return samples_.size() >= 3;
+  }
+
+  double search(double most) {
+    best_.clear();
+    double least = std::numeric_limits<double>::infinity();
+    for (double far = reach(most);; far *= 0.25) {
       sample(far);
       const double rough = roughness();
-      if (rough < 0.1 * least || best.empty()) {
-        best = samples_;
+      if (rough < 0.1 * least || best_.empty()) {
+        best_ = samples_;
         least = rough;
       }
       if (!(least > smooth_enough) || far < 4 * smallest_farthest) break;
     }
-    samples_ = std::move(best);
-    if (samples_.size() < 3) return std::nullopt;
-    return extrapolate();
+    return least;
   }
 
- private:
   void sample(double far) {
     samples_.clear();
     const double near = far / span;
     for (int i = 0; i < points; ++i) {
       const double u = 0.5 - 0.5 * std::cos(pi * (i + 0.5) / points);
-      solve_to(far + u * (near - far));
+      solve_to(side_ * (far + u * (near - far)));
     }
   }
 
@@ -168,8 +213,8 @@ class Locator {
   double reach(double far) {
     for (; far > smallest_farthest; far *= 0.5) {
       samples_.clear();
-      solve_to(far);
-      solve_to(0.5 * far);
+      solve_to(side_ * far);
+      solve_to(side_ * 0.5 * far);
       if (samples_.size() < 2) continue;
       const double outer = sine_rate(samples_[0].state), inner = sine_rate(samples_[1].state);
       if (std::abs(outer - inner) < even * std::abs(inner)) break;
@@ -204,7 +249,7 @@ class Locator {
   void find_resolved() {
     resolved_ = trajectory_.size() - 1;
     double best = std::numeric_limits<double>::infinity();
-    for (std::size_t i = resolved_; i > 0 && sine(trajectory_.state(i - 1)) < near_dead_centre; --i) {
+    for (std::size_t i = resolved_; i > first_ && sine(trajectory_.state(i - 1)) < near_dead_centre; --i) {
       const double now = unevenness(trajectory_.state(i - 1), trajectory_.state(i));
       if (now < best) resolved_ = i;
       best = std::min(best, now);
@@ -216,7 +261,7 @@ class Locator {
     for (auto s = stations_.rbegin(); s != stations_.rend(); ++s)
       if (s->sine > 1.0001 * target) return s->state;
     std::size_t i = resolved_;
-    while (i > 0 && sine(trajectory_.state(i)) < 1.0001 * target) --i;
+    while (i > first_ && sine(trajectory_.state(i)) < 1.0001 * target) --i;
     return trajectory_.state(i);
   }
 
@@ -240,11 +285,12 @@ class Locator {
       State to = from;
       integrator_.restart();
       if (!integrator_.step(to, step).ok()) {
-        step = 0.5 * (lo + step);
+        step = target > 0 ? 0.5 * (lo + step) : 1.2 * step;
         continue;
       }
       const double f = sine(to) - target;
-      if (std::abs(f) < 0.02 * target) {
+      if (std::abs(f) < 0.02 * std::abs(target)) {
+        if (to.t > edge_) return false;
         if (unevenness(from, to) > most_uneven) return false;
         keep(f + target, std::move(to));
         return true;
@@ -269,7 +315,8 @@ class Locator {
       integrator_.restart();
       if (!integrator_.step(to, step).ok()) continue;
       const double at = sine(to);
-      if (!(at > 1.0001 * target && at < sine(from)) || unevenness(from, to) > short_enough) continue;
+      if (!(at > 1.0001 * std::abs(target) && at < sine(from)) || unevenness(from, to) > short_enough)
+        continue;
       stations_.push_back({at, std::move(to)});
       return true;
     }
@@ -343,10 +390,13 @@ class Locator {
 
   const Trajectory& trajectory_;
   Integrator& integrator_;
-  double h_, edge_;
+  double h_;
+  std::size_t first_;
+  double edge_;
   System followed_;
   Index1 index1_;
-  std::vector<Sample> samples_;
+  double side_ = 1;  // that samples are taken on: before the pose (1) or behind it (-1)
+  std::vector<Sample> samples_, best_;
   std::vector<Sample> stations_;  // solved on the way, by falling sine
   std::size_t resolved_ = 0;      // the last state of the run to start from
   VectorXd q_, v_;
@@ -451,8 +501,12 @@ VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> sampl
 }
 
 std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
-                                     double edge) {
-  return Locator(trajectory, integrator, h, edge).locate();
+                                     std::size_t first, double edge) {
+  return Locator(trajectory, integrator, h, first, edge).locate();
+}
+std::optional<State> locate_before_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
+                                            std::size_t first, double t) {
+  return Locator(trajectory, integrator, h, first, t).locate_before(t);
 }
 
 }  // namespace unfurl

@@ -15,10 +15,16 @@ namespace unfurl {
 // that lands on it does not converge. So shortened steps are solved to several small fold angles on the near
 // side, and time, coordinates, velocities and multipliers, which are smooth functions of sin(fold), are
 // extrapolated from them to 0. The trajectory's last state must lie before the event, its next step (of size
-// h) at or behind it. Where drives come to rest in that pose, time is no smooth function of the sine: the
-// event is then at `edge`, the next time at which a drive begins or ends.
+// h) at or behind it. From its state `first` on the motion is smooth: no sample sets out from before that.
+// Where it is too near the pose, samples are taken behind the pose as well, up to `edge`. Where drives come
+// to rest in that pose, time is no smooth function of the sine: the event is then at `edge`, the next time at
+// which a drive begins or ends.
 std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
+                                     std::size_t first = 0,
                                      double edge = std::numeric_limits<double>::infinity());
+// A state next to that pose, at a time before it, by the same states.
+std::optional<State> locate_before_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
+                                            std::size_t first, double t);
 
 // A pose next to the deployed one, with its multipliers, and the sine of its fold angle.
 struct NearDeployed {

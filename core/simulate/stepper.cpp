@@ -277,6 +277,7 @@ bool Stepper::Loop::go_to(Crossing crossing) {
         seconds(crossing.later));
   if (t > now().t) {
     crossing.probe.state.t = t;
+    come_nearer(crossing.probe.state);
     go_on(std::move(crossing.probe.state), crossing.probe.report);
     integrator_->restart();
   }

@@ -34,12 +34,77 @@ double Stepper::Loop::next_edge() const {
   return std::numeric_limits<double>::infinity();
 }
 
+// The first state of the run from which on its motion is smooth: behind its last switch, impact and edge.
+std::size_t Stepper::Loop::smooth_since() const {
+  double edge = -std::numeric_limits<double>::infinity();
+  for (const TimeEdge& e : time_edges(model().structure, run_.options.step))
+    if (e.t <= now().t) edge = std::max(edge, e.t);
+  std::size_t i = run_.trajectory.size() - 1;
+  const auto begins = [&](std::size_t k) {
+    const double before = run_.trajectory.time(k - 1), t = run_.trajectory.time(k);
+    return same_instant(before, t) || &run_.trajectory.model(k - 1) != &model() ||
+           (t >= edge && before < edge);
+  };
+  while (i > 0 && !begins(i)) --i;
+  return i;
+}
+
+// The run goes on from a state that counted as the deployed pose.
+void Stepper::Loop::come_nearer(const State& state) {
+  constexpr double part = 0.1;
+  if (deployment_.empty() || deployed_) return;
+  if (const double left = fold(state); left > rounded_) margin_ = std::min(margin_, part * left);
+}
+
+// What begins or ends at an edge of time so shortly before the pose that the step that ends there counts as
+// there, or cannot be solved, still comes before it.
+bool Stepper::Loop::edge_comes_first(Probe& to, double h, std::optional<State>& event) {
+  constexpr double apart = 1e-8;  // from the pose, to be told from it
+  if (!event || regular_ || !(event->t > next_edge())) return false;
+  const std::vector<TimeEdge> edges = time_edges(model().structure, run_.options.step);
+  const auto edge = edge_after(edges, now().t);
+  const double t = edge->jump ? before_jump(edge->t) : edge->t;
+  const std::size_t first = smooth_since();
+  std::optional<State> there = locate_before_deployed(run_.trajectory, *careful(), h, first, t);
+  if (!there || !(fold(*there) > apart)) return false;
+  to = {.at = t - now().t, .state = std::move(*there)};
+  part_end_ = t;
+  come_nearer(to.state);
+  event.reset();
+  return true;
+}
+
+// A step over the pose that another one ends short of; where none can be solved, to the pose.
+Probe Stepper::Loop::beyond(const Probe& to, const State& event) {
+  const double way = event.t - now().t;
+  if (to.report.ok())
+    for (const double longer : {1.02, 1.1, 1.3}) {
+      Probe past{.at = longer * way, .state = now()};
+      if (now().t + past.at > next_edge()) break;
+      if (past.report = fresh_integrator()->step(past.state, past.at); past.report.ok()) return past;
+    }
+  return {.at = way, .state = event};
+}
+
+// A step may get through to a singular pose, with coordinates to half of their digits and rates to none.
+bool Stepper::Loop::singular_at(const State& state) {
+  if (std::max(system().constraints(), system().solved_coordinates()) > max_singular_size) return false;
+  run_.trajectory.append(state, {});
+  const bool singular = singular_at_end(run_.trajectory);
+  run_.trajectory.pop_back();
+  return singular;
+}
+
+std::unique_ptr<Integrator> Stepper::Loop::careful() const {
+  return run_.options.method == "dvm" ? careful_dvm().make(system(), run_.options) : fresh_integrator();
+}
+
 std::optional<State> Stepper::Loop::locate(double h, double latest) {
   std::optional<State> reached = step_to_deployed(model(), *fresh_integrator(), now(), h, margin_);
-  if (regular_ = reached.has_value(); regular_) return reached;
-  const bool dvm = run_.options.method == "dvm";
-  const auto fresh = dvm ? careful_dvm().make(system(), run_.options) : fresh_integrator();
-  std::optional<State> event = locate_deployed(run_.trajectory, *fresh, h, next_edge());
+  regular_ = reached && !singular_at(*reached);
+  if (regular_) return reached;
+  std::optional<State> event = locate_deployed(run_.trajectory, *careful(), h, smooth_since(), next_edge());
+  if (!event && reached) event = std::move(reached), regular_ = true;
   if (event && event->t > latest) event.reset();
   return event;
 }
@@ -105,6 +170,7 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
   }
   if (!event && !to.report.ok() && may_cross(stepping::near_deployed * h))
     event = locate(h, now().t + 2 * stepping::near_deployed * h);
+  if (edge_comes_first(to, h, event)) return true;
   // No step that ends so near the pose can be solved: the run's end lies on the way there.
   if (event && event->t > grid_.end()) {
     to.state = on_cubic(now(), *event, std::min(now().t + h, grid_.end()));
@@ -137,6 +203,7 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
   } else {
     event = locate(dip ? dip->length : h, std::numeric_limits<double>::infinity());
   }
+  if (edge_comes_first(to, h, event)) return true;
   if (event && event->t > grid_.end()) return event.reset(), true;
   return event || fail("the deployed pose was passed but its time could not be located");
 }

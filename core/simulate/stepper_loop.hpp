@@ -167,8 +167,9 @@ class Stepper::Loop {
     if (!event && (!to.report.ok() || to.report.weak_end)) step_over(to, h);
     if (watched() && (event || to.report.ok())) {
       Probe flat;
-      if (!to.report.ok()) flat = {.at = event->t - now().t, .state = *event};
-      auto crossing = find_crossing(to.report.ok() ? to : flat, h);
+      const bool short_of = event && (!to.report.ok() || event->t > now().t + to.at);
+      if (short_of) flat = beyond(to, *event);
+      auto crossing = find_crossing(short_of ? flat : to, h);
       if (crossing && (!event || side(*crossing, *event, h) < 0)) return go_to(std::move(*crossing));
     }
     if (event) return deployed(*event, to, h);
@@ -445,6 +446,12 @@ class Stepper::Loop {
   }
 
   double next_edge() const;
+  std::size_t smooth_since() const;
+  bool edge_comes_first(Probe& to, double h, std::optional<State>& event);
+  bool singular_at(const State& state);
+  std::unique_ptr<Integrator> careful() const;
+  Probe beyond(const Probe& to, const State& event);
+  void come_nearer(const State& state);
   std::optional<State> locate(double h, double latest);
   bool arrives(const Probe& to);
   std::optional<Dip> dip_inside(const Probe& to);
