@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/integrators/index1.hpp"
-#include "core/math/factors.hpp"
 #include "core/simulate/initial_state.hpp"
 
 namespace unfurl {
@@ -36,8 +35,6 @@ constexpr double from_start = 0.25;
 // then say less of the pose than this of its rates, those behind it may tell more.
 constexpr double from_switch = 0.95, well_known = 1e-10;
 constexpr int most_stations = 200;
-// A share of the multipliers that poses next to the deployed one must agree to.
-constexpr double most_open = 1e-5;
 constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 // Shares of a constraint's length: errors of the extrapolated pose above the first are taken away, by motions
 // of up to the second times as much.
@@ -49,21 +46,6 @@ constexpr int most_lengths = 40;
 
 using Sample = NearDeployed;
 
-// Shares of the samples in the value at zero of the polynomial of `degree` in the sine that fits them best,
-// each weighted with sine^4: an error d of a rod's length turns it by d / (l sine), and what the hinges'
-// velocities and accelerations take from that is d / sine^4 in the forces.
-VectorXd shares_at_zero(const std::vector<Sample>& samples, int degree) {
-  const Index count = static_cast<Index>(samples.size());
-  MatrixXd powers(count, degree + 1);
-  VectorXd weight(count);
-  for (Index i = 0; i < count; ++i) {
-    const double x = samples[static_cast<std::size_t>(i)].sine / samples.front().sine;
-    weight[i] = std::pow(x, 4);
-    for (Index j = 0; j <= degree; ++j) powers(i, j) = weight[i] * std::pow(x, static_cast<double>(j));
-  }
-  // The first row of the pseudo-inverse.
-  return weight.cwiseProduct(least_squares(powers.transpose(), VectorXd::Unit(degree + 1, 0)));
-}
 VectorXd at_zero(const std::vector<Sample>& samples, const VectorXd& shares, VectorXd State::*part) {
   VectorXd sum = VectorXd::Zero((samples.front().state.*part).size());
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -110,16 +92,21 @@ class Locator {
  private:
   bool find_samples() {
     find_resolved();
-    const double start = sine(trajectory_.state(0)), room = sine(trajectory_.state(first_));
+    const Deployment& deployment = trajectory_.structure().deployment;
+    const double start = deployment.remaining(trajectory_.node_positions(0), trajectory_.state(0).angles),
+                 room = sine(trajectory_.state(first_));
     const double far = std::min(farthest, from_start * start);
     const bool barred = first_ > 0 && from_switch * room < far;
     double least = std::numeric_limits<double>::infinity();
-    if (!barred || from_switch * room > smallest_farthest) least = search(barred ? from_switch * room : far);
+    if (!barred)
+      least = search(far, smooth_enough);
+    else if (from_switch * room > smallest_farthest)
+      least = search(from_switch * room, well_known);
     if (barred && !(least < well_known)) {
       std::vector<Sample> before = std::move(best_);
       side_ = -1;
       stations_.clear();
-      if (!(search(farthest) < least)) {
+      if (!(search(farthest, well_known) < least)) {
         best_ = std::move(before);
         side_ = 1;
       }
@@ -128,17 +115,19 @@ class Locator {
     return samples_.size() >= 3;
   }
 
-  double search(double most) {
+  // The samples that say most of the pose; any that say `enough` will do.
+  double search(double most, double enough) {
+    const double better = enough < smooth_enough ? 1.0 : 0.1;
     best_.clear();
     double least = std::numeric_limits<double>::infinity();
     for (double far = reach(most);; far *= 0.25) {
       sample(far);
       const double rough = roughness();
-      if (rough < 0.1 * least || best_.empty()) {
+      if (rough < better * least || best_.empty()) {
         best_ = samples_;
         least = rough;
       }
-      if (!(least > smooth_enough) || far < 4 * smallest_farthest) break;
+      if (!(least > enough) || far < 4 * smallest_farthest) break;
     }
     return least;
   }
@@ -403,102 +392,6 @@ class Locator {
 };
 
 }  // namespace
-
-namespace {
-
-// Nothing, and the values at zero of the polynomials through some values of the samples, by degrees.
-std::vector<VectorXd> fits_of(const std::vector<NearDeployed>& samples, const std::vector<VectorXd>& values) {
-  const VectorXd none = VectorXd::Zero(values.front().size());
-  std::vector<VectorXd> fits{none};
-  for (int degree = 0; degree < static_cast<int>(samples.size()); ++degree) {
-    const VectorXd shares = shares_at_zero(samples, degree);
-    VectorXd sum = none;
-    for (std::size_t i = 0; i < samples.size(); ++i) sum += shares[static_cast<Index>(i)] * values[i];
-    fits.push_back(std::move(sum));
-  }
-  return fits;
-}
-
-// Of sine^power times the multipliers.
-std::vector<VectorXd> multiplier_fits(const std::vector<NearDeployed>& samples, int power) {
-  std::vector<VectorXd> values;
-  values.reserve(samples.size());
-  for (const NearDeployed& sample : samples)
-    values.push_back(std::pow(sample.sine, power) * sample.state.lambda);
-  return fits_of(samples, values);
-}
-
-// The fit that changes least from the one of a degree less, by less than `most`; 0: none does.
-std::size_t settled_fit(const std::vector<VectorXd>& fits, double most) {
-  double least = most;
-  std::size_t best = 0;
-  for (std::size_t i = 2; i < fits.size(); ++i) {
-    const double change = (fits[i] - fits[i - 1]).norm();
-    if (!(change < least)) continue;
-    least = change;
-    best = i;
-  }
-  return best;
-}
-
-// c where multipliers grow like c / sine towards the pose, as where rods in line bear a load across them;
-// empty where they are bounded: there c is a small share of what sine times lambda is next to the pose.
-VectorXd pole(const std::vector<NearDeployed>& samples) {
-  constexpr double not_small = 1e-2, known = 1e-2, settled = 0.1;
-  const std::vector<VectorXd> fits = multiplier_fits(samples, 1);
-  const double beside = samples.back().sine * samples.back().state.lambda.norm();
-  const std::size_t best = settled_fit(fits, known * beside);
-  if (best == 0 || !(fits[best].norm() > not_small * beside)) return {};
-  // Round-off of the samples, which is of that size in rings of hundreds of units, agrees with nothing.
-  if (!((fits[best] - fits[best - 1]).norm() < settled * fits[best].norm())) return {};
-  return fits[best];
-}
-
-// What acts just before the deployed pose, where that is not what acts in it: on hinges without an axis whose
-// rods are in line there, all of them or those that rounding has put so, and hardly turn. Empty where it is.
-VectorXd other_force_before(Index1& index1, const std::vector<NearDeployed>& samples, const State& at) {
-  constexpr double other = 1e-7, known = 0.1;  // shares of what acts, and of the difference
-  std::vector<VectorXd> values;
-  values.reserve(samples.size());
-  for (const NearDeployed& sample : samples) values.push_back(index1.applied_force(sample.state));
-  const std::vector<VectorXd> fits = fits_of(samples, values);
-  const std::size_t best = settled_fit(fits, std::numeric_limits<double>::infinity());
-  const VectorXd& here = index1.applied_force(at);
-  const double off = (fits[best] - here).norm();
-  if (!(off > other * here.norm()) || !((fits[best] - fits[best - 1]).norm() < known * off)) return {};
-  return fits[best];
-}
-
-}  // namespace
-
-// By the equations of the pose, with what acts just before it. Beyond that, where fits that settle by
-// themselves say something else than those that the equations have corrected, they are right. Where
-// multipliers grow without bound, the equations of the pose lack what is left of them times a Jacobian that
-// vanishes.
-VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at) {
-  constexpr double something_else = 1e-3, grows = 1e-4, wild = 10;
-  const VectorXd c = pole(samples);
-  if (c.size() > 0)
-    for (NearDeployed& sample : samples) sample.state.lambda -= c / sample.sine;
-  const std::vector<VectorXd> own = multiplier_fits(samples, 0);
-  const std::size_t by_itself = settled_fit(own, most_open * own.back().norm());
-  if (c.size() > 0) {
-    const double least = grows * c.lpNorm<Eigen::Infinity>();
-    const VectorXd& rest = by_itself > 0 ? own[by_itself] : own.back();
-    return (c.array().abs() > least).select(std::numeric_limits<double>::quiet_NaN(), rest);
-  }
-  std::vector<VectorXd> fits = own;
-  index1.correct(at, fits, other_force_before(index1, samples, at));
-  const std::size_t best = settled_fit(fits, most_open * fits[0].norm());
-  // Where the pose is so near to losing more of its rank that the equations say anything, they are left out.
-  double next_to = 0;
-  for (const NearDeployed& sample : samples) next_to = std::max(next_to, sample.state.lambda.norm());
-  const std::size_t nearest = settled_fit(own, std::numeric_limits<double>::infinity());
-  if (!((fits[best] - own[nearest]).norm() <= wild * next_to)) return own[nearest];
-  const bool differ =
-      by_itself > 0 && (fits[best] - own[by_itself]).norm() > something_else * own[by_itself].norm();
-  return differ ? own[by_itself] : fits[best];
-}
 
 std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
                                      std::size_t first, double edge) {

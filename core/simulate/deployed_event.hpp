@@ -32,6 +32,9 @@ struct NearDeployed {
   State state;
 };
 
+// Shares of the samples in the value at zero of the polynomial of `degree` in the sine that fits them best.
+VectorXd shares_at_zero(const std::vector<NearDeployed>& samples, int degree);
+
 // The multipliers in the deployed pose, from those of such poses, the farthest one first, and its equations.
 // The pose itself is as good as any for all of the multipliers but what its loss of rank leaves open. Of
 // that a fit of low degree is truer than interpolation where round-off, d / sine^4, is more than what the

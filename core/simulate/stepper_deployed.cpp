@@ -105,6 +105,12 @@ std::optional<State> Stepper::Loop::locate(double h, double latest) {
   if (regular_) return reached;
   std::optional<State> event = locate_deployed(run_.trajectory, *careful(), h, smooth_since(), next_edge());
   if (!event && reached) event = std::move(reached), regular_ = true;
+  // So near the pose the motion at hand leads there.
+  const double left = fold(now()), rate = remaining_rate(model(), now());
+  if (!event && left > 0 && left <= stepping::singular_margin && rate < 0) {
+    event = now();
+    drift(system(), *event, left / -rate);
+  }
   if (event && event->t > latest) event.reset();
   return event;
 }
