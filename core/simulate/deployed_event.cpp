@@ -39,8 +39,6 @@ constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 // Shares of a constraint's length: errors of the extrapolated pose above the first are taken away, by motions
 // of up to the second times as much.
 constexpr double extrapolated = 1e-13, fitting = 100;
-// Below this, in which a method may have drifted, the pose is that in which drives end.
-constexpr double at_rest = 1e-6;
 // Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
 constexpr int most_lengths = 40;
 
@@ -332,25 +330,11 @@ class Locator {
     out.w = at_zero(samples_, shares, &State::w);
     extrapolate_tension(out);
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
-    rest_at_edge(out);
     fit(out);
     followed_.follow(samples_.front().state);
     followed_.count_on(out);
     out.lambda = multipliers_at_deployed(index1_, samples_, out);
     return out;
-  }
-
-  // A drive that slows down to rest in the deployed pose is there when its time has come.
-  void rest_at_edge(State& state) {
-    if (system().drives().empty() || !(edge_ > state.t)) return;
-    VectorXd rate(system().constraints());
-    system().target_rate(edge_, rate);
-    State then = state;
-    then.t = edge_;
-    if (rate.lpNorm<Eigen::Infinity>() > 0 || !(error(then) < at_rest) || !(error(then) < 0.1 * error(state)))
-      return;
-    state.t = edge_;
-    if (system().constraints() >= state.w.size()) state.w.setZero();  // all of it is driven
   }
 
   // Where what is carried shakes the structure, the extrapolation leaves something of the constraints, which

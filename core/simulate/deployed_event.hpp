@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,9 +15,8 @@ namespace unfurl {
 // side, and time, coordinates, velocities and multipliers, which are smooth functions of sin(fold), are
 // extrapolated from them to 0. The trajectory's last state must lie before the event, its next step (of size
 // h) at or behind it. From its state `first` on the motion is smooth: no sample sets out from before that.
-// Where it is too near the pose, samples are taken behind the pose as well, up to `edge`. Where drives come
-// to rest in that pose, time is no smooth function of the sine: the event is then at `edge`, the next time at
-// which a drive begins or ends.
+// Where it is too near the pose, samples are taken behind the pose as well, up to `edge`, the next time at
+// which something begins or ends. Where drives lead there, driven_deployed.hpp does.
 std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
                                      std::size_t first = 0,
                                      double edge = std::numeric_limits<double>::infinity());

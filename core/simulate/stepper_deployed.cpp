@@ -99,10 +99,36 @@ std::unique_ptr<Integrator> Stepper::Loop::careful() const {
   return run_.options.method == "dvm" ? careful_dvm().make(system(), run_.options) : fresh_integrator();
 }
 
+// Do drives alone say what remains? Found out where it matters, next to the pose.
+bool Stepper::Loop::leads() {
+  if (std::exchange(asked_, &system()) != &system()) leads_ = drives_lead_to_deployed(run_.trajectory);
+  return leads_;
+}
+
+std::optional<State> Stepper::Loop::locate_led(double guess, double h, double edge) {
+  const std::size_t last = run_.trajectory.size() - 1;
+  for (std::size_t i = last; i > 0 && i + 4 > last; --i)  // this step may be cut short
+    h = std::max(h, run_.trajectory.time(i) - run_.trajectory.time(i - 1));
+  std::optional<State> event =
+      locate_driven(run_.trajectory, [this] { return fresh_integrator(); }, {guess, h, edge});
+  if (!event || event->t < edge) return event;
+  // Multipliers are functions of the pose rather than of time where that comes to rest.
+  const auto integrator = fresh_integrator();
+  if (const auto near = locate_deployed(run_.trajectory, *integrator, h, smooth_since(), edge))
+    event->lambda = near->lambda;
+  return event;
+}
+
 std::optional<State> Stepper::Loop::locate(double h, double latest) {
   std::optional<State> reached = step_to_deployed(model(), *fresh_integrator(), now(), h, margin_);
-  regular_ = reached && !singular_at(*reached);
+  regular_ =
+      reached && !singular_at(*reached) && !(leads() && !regular_when_deployed(run_.trajectory, *reached));
   if (regular_) return reached;
+  if (leads()) {
+    std::optional<State> event = locate_led(now().t, h, next_edge());
+    if (event && event->t > latest) event.reset();
+    return event;
+  }
   std::optional<State> event = locate_deployed(run_.trajectory, *careful(), h, smooth_since(), next_edge());
   if (!event && reached) event = std::move(reached), regular_ = true;
   // So near the pose the motion at hand leads there.
@@ -163,10 +189,34 @@ std::optional<Dip> Stepper::Loop::dip_at_end(const Probe& to, double h) {
       model(), [this] { return fresh_integrator(); }, now(), behind, longer, rounded_);
 }
 
+// What a drive leads may come to rest in the deployed pose: near is not there.
+bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<State>& event) {
+  const bool goes_on = run_.options.at_deployed == "pass";
+  if (margin_ > rounded_ && crosses(to.state) && leads()) {
+    // Forces so near the pose are those of rounding: where nothing can happen on the way, it is gone at once.
+    const double edge = next_edge();
+    if (!goes_on && !watched() && edge <= grid_.end()) event = locate_led(edge, h, edge);
+    if (event && event->t == edge) return regular_ = false, true;
+    event.reset();
+    margin_ = stepping::deployed_already;
+  }
+  if (margin_ > rounded_ && crosses(to.state) && !system().drives().empty() &&
+      regular_when_deployed(run_.trajectory, to.state))
+    margin_ = stepping::deployed_already;
+  if (!arrives(to)) return false;
+  if (run_.options.at_deployed == "stop" && leads() && !regular_when_deployed(run_.trajectory, to.state))
+    event = locate_led(part_end_, h, part_end_);
+  regular_ = !event;
+  if (event) return true;
+  event = to.state;
+  event->t = part_end_;
+  return true;
+}
+
 // The deployed pose where this step reaches it; a step that failed without that is tried in parts. False
 // where the run ends.
-bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& event) {
-  if (!to.report.ok() && may_cross(1.5 * h)) event = locate(h, now().t + 1.05 * h);
+bool Stepper::Loop::find_deployed(Probe& to, double& h, std::optional<State>& event) {
+  if (!to.report.ok() && may_cross(1.5 * h) && !leads()) event = locate(h, now().t + 1.05 * h);
   if (!event && !to.report.ok()) {
     to.state = now();
     to.report = step_in_parts(*integrator_, to.state, h, [this](State& state, double length) {
@@ -174,6 +224,8 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
     });
     if (to.report.weak_end) settle_in_pose(to, h);
   }
+  const bool unsure = !to.report.ok() || to.report.weak_end;
+  if (unsure && may_cross(stepping::near_deployed * h) && leads()) step_over(to, h);
   if (!event && !to.report.ok() && may_cross(stepping::near_deployed * h))
     event = locate(h, now().t + 2 * stepping::near_deployed * h);
   if (edge_comes_first(to, h, event)) return true;
@@ -185,15 +237,7 @@ bool Stepper::Loop::find_deployed(Probe& to, double h, std::optional<State>& eve
     return event.reset(), true;
   }
   if (event || !to.report.ok() || deployment_.empty() || deployed_) return true;
-  // What a drive leads may come to rest in the deployed pose: near is not there.
-  if (margin_ > rounded_ && crosses(to.state) && !system().drives().empty() &&
-      regular_when_deployed(run_.trajectory, to.state))
-    margin_ = stepping::deployed_already;
-  if (arrives(to)) {
-    event = to.state;
-    event->t = part_end_;
-    return regular_ = true;
-  }
+  if (rests_deployed(to, h, event)) return true;
   std::optional<Dip> dip = dip_inside(to);
   if (!dip) dip = dip_at_end(to, h);
   if (!dip && !crosses(to.state)) {

@@ -14,6 +14,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/drift.hpp"
+#include "core/simulate/driven_deployed.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/measured_event.hpp"
@@ -291,24 +292,7 @@ class Stepper::Loop {
   void settle_in_pose(Probe& to, double h);
 
   // What comes of it that these have crossed, now; `left`: Crossing's. False where the run ends.
-  bool act(const std::vector<std::size_t>& which, const VectorXd& left = {}) {
-    if (now().t - crowd_time_ > stepping::one_time * run_.options.step) crowd_time_ = now().t, crowd_ = 0;
-    const long most = stepping::most_switches + 2 * static_cast<long>(sides_.size());
-    // Rebounds that lose nothing come to an end, if late.
-    const bool lossless = std::ranges::all_of(
-        which, [&](std::size_t i) { return sides_.is_stop(i) && sides_.stops()[i].restitution == 1; });
-    constexpr long lossless_share = 20;
-    const long counts = lossless ? 1 : lossless_share, room = lossless_share * stepping::most_in_step * most;
-    in_step_ += counts;
-    const bool crowded = ++crowd_ == most || (in_step_ >= room && in_step_ - counts < room);
-    if (crowded) return hold_what_touches();
-    if (crowd_ > 2 * most || in_step_ > room + lossless_share * most) return stop_watching();
-    ModeChange change = modes_after(in_base(now()), which, left);
-    // What drives or pushes may begin with nothing: a moment later it is seen what must give way to it.
-    if (change.failure.empty() && !change.changed && change.impacts.empty())
-      change = modes_after(in_base(now()), which, left, stepping::moment * run_.options.step);
-    return apply(change);
-  }
+  bool act(const std::vector<std::size_t>& which, const VectorXd& left = {});
 
   // Stops that are touched from the start, none of which is approached then.
   bool rests_from_start() {
@@ -456,7 +440,10 @@ class Stepper::Loop {
   bool arrives(const Probe& to);
   std::optional<Dip> dip_inside(const Probe& to);
   std::optional<Dip> dip_at_end(const Probe& to, double h);
-  bool find_deployed(Probe& to, double h, std::optional<State>& event);
+  bool leads();
+  std::optional<State> locate_led(double guess, double h, double edge);
+  bool rests_deployed(const Probe& to, double h, std::optional<State>& event);
+  bool find_deployed(Probe& to, double& h, std::optional<State>& event);
   double uneven(const State& event);
   bool deployed(State& event, Probe& to, double h);
   bool latch();
@@ -495,6 +482,8 @@ class Stepper::Loop {
   bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false;
   bool contradictions_ = false;                // told by a step's report
   double margin_ = stepping::singular_margin;  // a tenth of where the run began, if that is less
+  const System* asked_ = nullptr;              // whose drives
+  bool leads_ = false;                         // lead to the deployed pose
   VectorXd q_;
   std::size_t new_ = 0, part_ = 0;    // first state that was not handed over, first of the present part
   double last_step_ = 0, swing_ = 0;  // of the control of steps: where that begins anew, Stepper's

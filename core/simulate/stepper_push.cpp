@@ -65,4 +65,23 @@ void Stepper::Loop::enter_pushed() {
     enter(base_, pushed_->from, true);
 }
 
+bool Stepper::Loop::act(const std::vector<std::size_t>& which, const VectorXd& left) {
+  if (now().t - crowd_time_ > stepping::one_time * run_.options.step) crowd_time_ = now().t, crowd_ = 0;
+  const long most = stepping::most_switches + 2 * static_cast<long>(sides_.size());
+  // Rebounds that lose nothing come to an end, if late.
+  const bool lossless = std::ranges::all_of(
+      which, [&](std::size_t i) { return sides_.is_stop(i) && sides_.stops()[i].restitution == 1; });
+  constexpr long lossless_share = 20;
+  const long counts = lossless ? 1 : lossless_share, room = lossless_share * stepping::most_in_step * most;
+  in_step_ += counts;
+  const bool crowded = ++crowd_ == most || (in_step_ >= room && in_step_ - counts < room);
+  if (crowded) return hold_what_touches();
+  if (crowd_ > 2 * most || in_step_ > room + lossless_share * most) return stop_watching();
+  ModeChange change = modes_after(in_base(now()), which, left);
+  // What drives or pushes may begin with nothing: a moment later it is seen what must give way to it.
+  if (change.failure.empty() && !change.changed && change.impacts.empty())
+    change = modes_after(in_base(now()), which, left, stepping::moment * run_.options.step);
+  return apply(change);
+}
+
 }  // namespace unfurl

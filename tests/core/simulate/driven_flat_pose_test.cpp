@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Drives that lead to a flat pose, in which the constraints lose rank, or through it.
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace driven_flat_pose_test {
+
+namespace {
+
+using testing::run_scene;
+
+constexpr double start = 60 * radians_per_degree;
+
+// Two legs and a coupler of 1 m and 1 kg on pivots in one line, the first leg led from 60 degrees in 1 s, and
+// `nodes`, `rods` beside them.
+std::string linkage(const std::string& to, double gravity, const std::string& nodes = "",
+                    const std::string& rods = "") {
+  return R"toml(
+[structure]
+kind = "custom"
+nodes = [{name = "X", position = [9, 0, 0], fixed = true}, {name = "A0", position = [0, 0, 0], fixed = true},
+  {name = "B0", position = ["=cos(60*deg)", 0, "=sin(60*deg)"]}, {name = "A1", position = [0.7, 0, 0], fixed = true},
+  {name = "B1", position = ["=0.7+cos(60*deg)", 0, "=sin(60*deg)"]})toml" +
+         nodes + R"(]
+rods = [{nodes = ["A0", "B0"], mass = 1}, {nodes = ["A1", "B1"], mass = 1}, {nodes = ["B0", "B1"], mass = 1})" +
+         rods + R"(]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["B*"]
+normal = [0, 1, 0]
+[gravity]
+acceleration = [0, 0, )" +
+         std::to_string(-gravity) + R"(]
+[deployment]
+measure = "angle X A0 B0 about 0 -1 0"
+deployed = 0
+[[constraints]]
+kind = "angle"
+name = "m"
+nodes = ["X", "A0", "B0"]
+axis = [0, -1, 0]
+)" + to + R"(
+[solver]
+step = 0.01
+stages = 4
+end_time = 2
+)";
+}
+std::string smooth(double to) {
+  return "motion = \"smooth\"\nduration = 1\nto = " + std::to_string(to);
+}
+const std::string mass = R"(, {name = "Q", position = [5.8, 0, 3], mass = 2, velocity = [3, 0, 0]})";
+
+double deployed_at(const Simulation& run) {
+  for (const Event& event : run.events)
+    if (event.kind == "deployed") return event.t;
+  return -1;
+}
+Vec3 last(const Simulation& run, const std::string& name, bool velocity = false) {
+  const Trajectory& t = run.trajectory;
+  const VectorXd of = velocity ? t.node_velocities(t.size() - 1) : t.node_positions(t.size() - 1);
+  const auto& nodes = t.structure().nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i].name == name) return of.segment<3>(3 * static_cast<Index>(i));
+  return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
+// Share, rate and acceleration of smooth motion in 1 s.
+std::array<double, 3> share(double u) {
+  return {u * u * u * (10 - 15 * u + 6 * u * u), 30 * u * u * (1 - u) * (1 - u),
+          60 * u * (1 - u) * (1 - 2 * u)};
+}
+
+}  // namespace
+
+// A mass that nothing touches is where its throw takes it in 1 s; 12 digits are those of the polynomial
+// through states up to 0.12 s before, whose weights add up to some 4000.
+TEST_CASE("what moves beside a drive that comes to rest in a flat pose goes on until it does") {
+  const std::string table = "motion = \"table\"\ntimes = [0, 0.4, 1]\nvalues = [60, 30, 0]";
+  for (const double g : {0.0, 9.81})
+    for (const int copies : {0, 4, 8, -1}) {
+      std::string rods;
+      for (int i = 0; i < copies; ++i)
+        rods += R"(, {name = "copy )" + std::to_string(i) + R"(", nodes = ["A1", "B1"], mass = 0.1})";
+      const Simulation run = run_scene(linkage(copies < 0 ? table : smooth(0), g, mass, rods));
+      CAPTURE(g, copies, run.message);
+      REQUIRE(run.status == RunStatus::deployed);
+      CHECK(deployed_at(run) == Approx(1).epsilon(1e-14));
+      CHECK(run.trajectory.end_time() == deployed_at(run));
+      CHECK((last(run, "Q") - Vec3(8.8, 0, 3 - 0.5 * g)).norm() < 1e-10);
+      CHECK((last(run, "Q", true) - Vec3(3, 0, -g)).norm() < 1e-10);
+      // Rounding d of a rod's length turns its end by d / sine of the angle left, 1e-5 a step before.
+      CHECK((last(run, "B1") - Vec3(1.7, 0, 0)).norm() < 1e-8);
+      CHECK(last(run, "B1", true).norm() < 1e-7);
+    }
+}
+
+// A payload that hangs from the second leg's end: a pendulum on a support that moves on the leg's circle.
+TEST_CASE("a payload on what a drive lays flat is where it swings to") {
+  const double length = 0.5, m = 0.5, rod = 0.2, g = 9.81, inertia = (m + rod / 3) * length * length,
+               moment = (m + rod / 2) * length;
+  using Pair = Eigen::Vector2d;
+  const auto slope = [&](double t, const Pair& y) {
+    const auto [f, df, ddf] = share(t);
+    const double a = start * (1 - f), da = -start * df, dda = -start * ddf,
+                 ax = -std::sin(a) * dda - std::cos(a) * da * da,
+                 az = std::cos(a) * dda - std::sin(a) * da * da;
+    return Pair(y[1], -moment / inertia * (ax * std::cos(y[0]) + (az + g) * std::sin(y[0])));
+  };
+  Pair y(0, 0);
+  constexpr int steps = 2000;  // Runge-Kutta's, off by (4.4 / 2000)^4 or so
+  constexpr double h = 1.0 / steps;
+  for (int i = 0; i < steps; ++i) {
+    const double t = i * h;
+    const Pair a = slope(t, y), b = slope(t + h / 2, y + h / 2 * a), c = slope(t + h / 2, y + h / 2 * b),
+               d = slope(t + h, y + h * c);
+    y += h / 6 * (a + 2 * b + 2 * c + d);
+  }
+  const Vec3 at(1.7 + length * std::sin(y[0]), 0, -length * std::cos(y[0])),
+      rate(length * std::cos(y[0]) * y[1], 0, length * std::sin(y[0]) * y[1]);
+  const std::string payload =
+      R"toml(, {name = "Q", position = ["=0.7+cos(60*deg)", 0, "=sin(60*deg)-0.5"], mass = 0.5})toml";
+  const std::string scene = linkage(smooth(0), g, payload, R"(, {nodes = ["B1", "Q"], mass = 0.2})");
+  for (const char* step : {"0.01", "0.0101", "0.005"}) {
+    const Simulation run = run_scene(
+        scene, {std::string("solver.step=") + step, "structure.constraints[0].nodes=[\"B*\", \"Q\"]"});
+    CAPTURE(step, run.message);
+    REQUIRE(run.status == RunStatus::deployed);
+    CHECK(deployed_at(run) == Approx(1).epsilon(1e-14));
+    CHECK((last(run, "Q") - at).norm() < 1e-8);
+    CHECK((last(run, "Q", true) - rate).norm() <
+          1e-6);  // as much of rounding in the leg's rate next to the pose
+  }
+}
+
+// The time is the drive's own, start + (to - start) share(t) = 0; B1 falls at the leg's rate.
+TEST_CASE("a drive that leads through a flat pose deploys it at its own time at every step") {
+  for (const double to : {-0.001, -0.3, -1.0, -3.0, -5.0, -10.0}) {
+    const double part = 60 / (60 - to);
+    double low = 0, high = 1;
+    for (int i = 0; i < 100; ++i) {
+      const double middle = 0.5 * (low + high);
+      (share(middle)[0] < part ? low : high) = middle;
+    }
+    const double rate = (to - 60) * radians_per_degree * share(low)[1];
+    for (const char* step : {"0.02", "0.01", "0.008", "0.005", "0.002"})
+      for (const char* stages : {"4", "6"}) {
+        const Simulation run =
+            run_scene(linkage(smooth(to), to == -0.001 ? 0.0 : 9.81, mass),
+                      {std::string("solver.step=") + step, std::string("solver.stages=") + stages});
+        CAPTURE(to, step, stages, run.message);
+        CHECK(run.status == RunStatus::deployed);
+        CHECK(deployed_at(run) == Approx(low).epsilon(1e-10));
+        CHECK(last(run, "Q").x() == Approx(5.8 + 3 * low).epsilon(1e-10));
+        CHECK(last(run, "B1", true).z() == Approx(rate).epsilon(1e-5));
+      }
+  }
+}
+
+TEST_CASE("a run goes on from a flat pose in which its drive has come to rest") {
+  for (const char* then : {"pass", "latch"})
+    for (const char* how :
+         {"solver.stages=4", "solver.stages=7", "solver.step=0.0101", "solver.adaptive=true"}) {
+      const Simulation run =
+          run_scene(linkage(smooth(0), 9.81, mass), {std::string("solver.at_deployed=") + then, how});
+      CAPTURE(then, how, run.message);
+      CHECK(run.status == RunStatus::completed);
+      CHECK(deployed_at(run) == Approx(1).epsilon(1e-14));
+      CHECK((last(run, "Q") - Vec3(11.8, 0, 3 - 2 * 9.81)).norm() < 1e-9);
+    }
+}
+
+TEST_CASE("a ring whose mean angle a motor leads is deployed when that has come to its end") {
+  const Scene scene = read_scene_file(find_scene("hoop6_motor"),
+                                      {"structure.model=joints", "constraints[0].to=0",
+                                       "structure.perturbed_unit=1", "structure.perturbed_force=2"});
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  CHECK(run.status == RunStatus::deployed);
+  CHECK(deployed_at(run) == Approx(5).epsilon(1e-14));
+}
+
+}  // namespace driven_flat_pose_test
