@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forces that are set between steps, and what gives way to them.
+// What one-sided holds do when something has crossed, and forces that are set between steps.
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
