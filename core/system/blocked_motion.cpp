@@ -25,7 +25,7 @@ constexpr Index most_coordinates = 300;  // dense algebra within a fraction of a
 constexpr double round_off = 1e-14, meant = 1e-7;
 // What is rigid by its make is farther from a pose in which it moves; rows count as independent above the
 // other.
-constexpr double nearly_free = 1e-3;
+constexpr double nearly_free = 1e-3, alone = 1e-2;
 // Misfits below this let a run of usual length be right to eight digits.
 constexpr double worth_a_word = 3e-13;
 
@@ -84,6 +84,7 @@ struct Doubt {
   double misfit = 0;  // the largest singular value that is neither round-off nor meant
   double nearly = 0;  // of what stands still by its own rows: how far it is from a pose in which it moves
   std::vector<int> held{};  // those rows
+  bool afloat = false;      // they move as one body
 };
 
 // Rows in sets that share no coordinate.
@@ -128,12 +129,15 @@ Doubt doubt_of_rows(const System& system, const ConstVec& q) {
     const VectorXd values = singular_values(D);
     for (const double value : values)
       if (value > round_off && value < meant) doubt.misfit = std::max(doubt.misfit, value);
+    // Slender bodies have several small values of alike size.
     const Index rank = (values.array() > dependent_row).count();
-    if (rank == 0 || !(values[rank - 1] < nearly_free) ||
-        rank + rigid_motions(picked_rows(G, set), q, system.ghosts()) != D.cols())
-      continue;
+    const auto stands_alone = [&] { return rank == 1 || values[rank - 1] < alone * values[rank - 2]; };
+    if (rank == 0 || !(values[rank - 1] < nearly_free) || !stands_alone()) continue;
+    const Index rigid = rigid_motions(picked_rows(G, set), q, system.ghosts());
+    if (rank + rigid != D.cols()) continue;
     doubt.nearly = values[rank - 1];
     doubt.held = set;
+    doubt.afloat = rigid > 0;
   }
   return doubt;
 }
@@ -154,9 +158,9 @@ std::string misfit_warning(const System& system, const ConstVec& q) {
       for (const int row : doubt.held)
         if (const std::string& name = all[static_cast<std::size_t>(row)]; name.starts_with("rod ") == rods)
           names.push_back(name);
-    return listed(names, 4) +
-           " hold each other and stand still, though they nearly leave one motion (all but " +
-           rounded(doubt.nearly, 2) + " of their size): if it is meant, " +
+    return listed(names, 4) + " hold each other " + (doubt.afloat ? "as one rigid body" : "and stand still") +
+           ", though they nearly leave one motion (all but " + rounded(doubt.nearly, 2) +
+           " of their size): if it is meant, " +
            (doubt.nearly < rounding_of_rows(system, q)
                 ? "move the structure near the origin, from which it stands too far for the digits that a "
                   "number has"
