@@ -40,7 +40,7 @@ constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 // of up to the second times as much.
 constexpr double extrapolated = 1e-13, fitting = 100;
 // Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
-constexpr int most_lengths = 40;
+constexpr int most_lengths = 40, most_behind = 8;
 
 using Sample = NearDeployed;
 
@@ -79,7 +79,6 @@ class Locator {
     out.w = at_zero(samples_, shares, &State::w);
     extrapolate_tension(out);
     if (!out.z.allFinite()) return std::nullopt;
-    fit(out);
     samples_ = {};
     keep(0, std::move(out));
     if (samples_.empty()) return std::nullopt;
@@ -103,8 +102,10 @@ class Locator {
     if (barred && !(least < well_known)) {
       std::vector<Sample> before = std::move(best_);
       side_ = -1;
+      resolved_ = trajectory_.size() - 1;
       stations_.clear();
-      if (!(search(farthest, well_known) < least)) {
+      const double of_step = -sine_rate(trajectory_.state(resolved_)) * trajectory_.options().step;
+      if (!(search(std::min(farthest, of_step), well_known) < least)) {
         best_ = std::move(before);
         side_ = 1;
       }
@@ -125,7 +126,7 @@ class Locator {
         best_ = samples_;
         least = rough;
       }
-      if (!(least > enough) || far < 4 * smallest_farthest) break;
+      if (!(least > enough) || (side_ < 0 && samples_.size() < 3) || far < 4 * smallest_farthest) break;
     }
     return least;
   }
@@ -254,6 +255,10 @@ class Locator {
 
   // From the last state before `target`, in one step that is short enough or with stations on the way.
   void solve_to(double target) {
+    if (target < 0) {  // in one step over the pose
+      step_to(last_before(target), target, std::numeric_limits<double>::infinity());
+      return;
+    }
     for (int i = 0; i < most_stations; ++i) {
       const State from = last_before(target);
       if (step_to(from, target, short_enough)) return;
@@ -268,7 +273,7 @@ class Locator {
     const double s0 = sine(from), rate0 = sine_rate(from);
     double lo = 0, f_lo = s0 - target;
     double step = std::min(1.2 * h_, rate0 < 0 ? f_lo / -rate0 : h_);
-    for (int it = 0; it < most_lengths; ++it) {
+    for (int it = 0; it < (target > 0 ? most_lengths : most_behind); ++it) {
       State to = from;
       integrator_.restart();
       if (!integrator_.step(to, step).ok()) {
@@ -302,8 +307,7 @@ class Locator {
       integrator_.restart();
       if (!integrator_.step(to, step).ok()) continue;
       const double at = sine(to);
-      if (!(at > 1.0001 * std::abs(target) && at < sine(from)) || unevenness(from, to) > short_enough)
-        continue;
+      if (!(at > 1.0001 * target && at < sine(from)) || unevenness(from, to) > short_enough) continue;
       stations_.push_back({at, std::move(to)});
       return true;
     }

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What begins, goes taut or strikes shortly before a deployed pose with rods in line.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "tests/support/number.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace switch_before_flat_test {
+
+namespace {
+
+using testing::number;
+
+constexpr double inertia = 5.0 / 3,
+                 weight = 2 * 9.81;          // of the angle: two legs and a coupler, 1 m and 1 kg each
+const double root = std::sqrt(3.0) / 2;      // sine of the angle at the start
+constexpr double flat = 0.5378480610210875;  // [s], from rest under gravity alone
+
+// Two cranks of 1 m with pivots in one line and their coupler, from 60 degrees at rest into one line.
+std::string cranks(const std::string& nodes, const std::string& rest) {
+  std::string out =
+      "[structure]\nkind = \"custom\"\nnodes = [{name = \"X\", position = [9, 0, 0], fixed = true}";
+  for (const int i : {0, 1}) {
+    const std::string k = std::to_string(i);
+    out += ", {name = \"A" + k + "\", position = [" + number(0.7 * i) +
+           ", 0, 0], fixed = true}, {name = \"B" + k + "\", position = [" + number(0.7 * i + 0.5) + ", 0, " +
+           number(root) + "]}";
+  }
+  return out + nodes + R"(]
+rods = [{nodes = ["A0", "B0"], mass = 1}, {nodes = ["A1", "B1"], mass = 1}, {nodes = ["B0", "B1"], mass = 1}]
+constraints = [{kind = "plane", nodes = ["B*"], normal = [0, 1, 0]}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[deployment]
+measure = "angle X A0 B0 about 0 -1 0"
+deployed = 0
+[solver]
+end_time = 2
+stages = 5
+)" + rest;
+}
+
+// B0's velocity in the deployed pose.
+double speed(const Simulation& run) {
+  REQUIRE(run.status == RunStatus::deployed);
+  return run.trajectory.velocities(run.trajectory.size() - 1)[5];
+}
+
+}  // namespace
+
+// I th'' = (F - 2 g) cos th: I th'^2 / 2 falls by F - 2 g times the sine. The sine at which the load begins
+// is the run's own, where that has an edge of time.
+TEST_CASE("a load that begins shortly before a flat deployed pose acts in what is left") {
+  for (const double before : {0.01, 1e-3, 5e-4, 1e-5})
+    for (const double force : {-200.0, 250.0})
+      for (const char* step : {"0.01", "0.003"}) {
+        INFO(before << " s, " << force << " N, step " << step);
+        const std::string t = number(flat - before);
+        const Simulation run = testing::run_scene(cranks(
+            "",
+            "step = " + std::string(step) +
+                "\n[[forces]]\nkind = \"load_over_time\"\nnodes = [\"B0\"]\nforce = [0, 0, 1]\ntimes = [" +
+                t + ", " + t + ", 9]\nvalues = [0, " + number(force) + ", " + number(force) + "]\n"));
+        const double sine = run.trajectory.positions_at(flat - before)[8];
+        // Next to the pose rounding, 1e-16 / sine^2, takes digits of rates.
+        CHECK(speed(run) ==
+              Approx(-std::sqrt(2 * (weight * root - force * sine) / inertia)).epsilon(0).margin(1e-6));
+      }
+}
+
+// A spring's energy is what the stay takes.
+TEST_CASE("a stay that goes taut shortly before a flat deployed pose holds back") {
+  constexpr double stiffness = 2e4;
+  for (const double angle : {1e-2, 3e-3, 1e-3})
+    for (const char* step : {"0.01", "0.002"}) {
+      INFO(angle << ", step " << step);
+      const double rest = std::hypot(1 - std::cos(angle), 3 - std::sin(angle));
+      const Simulation run =
+          testing::run_scene(cranks(", {name = \"Y\", position = [1.7, 0, 3], fixed = true}",
+                                    "step = " + std::string(step) +
+                                        "\n[[forces]]\nkind = \"spring\"\nname = \"stay\"\nnodes = [\"Y\", "
+                                        "\"B1\"]\ntension_only = true\nstiffness = " +
+                                        number(stiffness) + "\nfree_length = " + number(rest) + "\n"));
+      const double taken = 0.5 * stiffness * (3 - rest) * (3 - rest);
+      CHECK(speed(run) == Approx(-std::sqrt(2 * (weight * root - taken) / inertia)).epsilon(0).margin(1e-6));
+      REQUIRE(run.events.size() >= 2);
+      CHECK(run.events[0].kind == "taut");
+    }
+}
+
+TEST_CASE("what strikes beside a structure before its flat deployed pose takes nothing of that") {
+  for (const double before : {2e-3, 1e-4, 1e-6}) {
+    INFO(before << " s");
+    const double fall = flat - before;
+    const Simulation run = testing::run_scene(
+        cranks(", {name = \"Q\", position = [5, 0, " + number(0.5 * 9.81 * fall * fall) + "], mass = 1}",
+               "step = 0.01\n[[constraints]]\nkind = \"coordinate_stop\"\nnodes = [\"Q\"]\ndirection = [0, "
+               "0, 1]\nmin = "
+               "0\nrestitution = 0.8\n"));
+    CHECK(speed(run) == Approx(-std::sqrt(2 * weight * root / inertia)).epsilon(0).margin(1e-7));
+    CHECK(run.trajectory.end_time() == Approx(flat).epsilon(0).margin(1e-10));
+  }
+}
+
+}  // namespace switch_before_flat_test
