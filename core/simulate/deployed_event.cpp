@@ -79,6 +79,7 @@ class Locator {
     out.w = at_zero(samples_, shares, &State::w);
     extrapolate_tension(out);
     if (!out.z.allFinite()) return std::nullopt;
+    fit(out);
     samples_ = {};
     keep(0, std::move(out));
     if (samples_.empty()) return std::nullopt;

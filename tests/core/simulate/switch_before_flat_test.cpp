@@ -47,7 +47,7 @@ stages = 5
 // B0's velocity in the deployed pose.
 double speed(const Simulation& run) {
   REQUIRE(run.status == RunStatus::deployed);
-  return run.trajectory.velocities(run.trajectory.size() - 1)[5];
+  return run.trajectory.velocities(run.trajectory.size() - 1)[8];
 }
 
 }  // namespace
