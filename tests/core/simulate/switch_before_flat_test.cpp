@@ -102,6 +102,8 @@ TEST_CASE("what strikes beside a structure before its flat deployed pose takes n
                "0, 1]\nmin = "
                "0\nrestitution = 0.8\n"));
     CHECK(speed(run) == Approx(-std::sqrt(2 * weight * root / inertia)).epsilon(0).margin(1e-7));
+    CHECK(run.trajectory.velocities(run.trajectory.size() - 1)[17] ==
+          Approx(9.81 * (0.8 * fall - before)).epsilon(0).margin(1e-9));
     CHECK(run.trajectory.end_time() == Approx(flat).epsilon(0).margin(1e-10));
   }
 }
