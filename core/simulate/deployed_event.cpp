@@ -273,7 +273,8 @@ class Locator {
   bool step_to(const State& from, double target, double most_uneven) {
     const double s0 = sine(from), rate0 = sine_rate(from);
     double lo = 0, f_lo = s0 - target;
-    double step = std::min(1.2 * h_, rate0 < 0 ? f_lo / -rate0 : h_);
+    const double by_rate = rate0 < 0 ? f_lo / -rate0 : h_;
+    double step = target > 0 ? std::min(1.2 * h_, by_rate) : by_rate;
     for (int it = 0; it < (target > 0 ? most_lengths : most_behind); ++it) {
       State to = from;
       integrator_.restart();
