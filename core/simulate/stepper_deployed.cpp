@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A step of a run and the deployed pose.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -12,6 +13,16 @@
 #include "core/structure/time_edges.hpp"
 
 namespace unfurl {
+namespace {
+
+bool same_state(const State& a, const State& b, double h) {
+  constexpr double same = 1e-9, rates = 5e-6;
+  const auto size = [](const VectorXd& x) { return x.lpNorm<Eigen::Infinity>(); };
+  return std::abs(a.t - b.t) <= same * h && size(a.z - b.z) <= same * size(a.z) &&
+         size(a.w - b.w) <= rates * size(a.w);
+}
+
+}  // namespace
 
 // A drive comes to its end in the deployed pose: from then on what is left is zero but for rounding, and for
 // what the method drifts from the drive, and whose sign that has says nothing.
@@ -124,18 +135,19 @@ std::optional<State> Stepper::Loop::locate(double h, double latest) {
   regular_ =
       reached && !singular_at(*reached) && !(leads() && !regular_when_deployed(run_.trajectory, *reached));
   if (regular_) return reached;
-  if (leads()) {
-    std::optional<State> event = locate_led(now().t, h, next_edge());
-    if (event && event->t > latest) event.reset();
-    return event;
-  }
   std::optional<State> event = locate_deployed(run_.trajectory, *careful(), h, smooth_since(), next_edge());
-  if (!event && reached) event = std::move(reached), regular_ = true;
+  if (!leads() && !event && reached) event = std::move(reached), regular_ = true;
   // So near the pose the motion at hand leads there.
   const double left = fold(now()), rate = remaining_rate(model(), now());
-  if (!event && left > 0 && left <= stepping::singular_margin && rate < 0) {
+  if (!leads() && !event && left > 0 && left <= stepping::singular_margin && rate < 0) {
     event = now();
     drift(system(), *event, left / -rate);
+  }
+  if (leads() && !(event && regular_when_deployed(run_.trajectory, *event))) {
+    // Where a drive goes on at speed both may be right, and multipliers are those of more poses.
+    std::optional<State> led = locate_led(now().t, h, next_edge());
+    const bool passed = std::isinf(latest);  // and is there
+    if (led ? !(event && same_state(*led, *event, h)) : !passed) event = std::move(led);
   }
   if (event && event->t > latest) event.reset();
   return event;
@@ -192,17 +204,18 @@ std::optional<Dip> Stepper::Loop::dip_at_end(const Probe& to, double h) {
 // What a drive leads may come to rest in the deployed pose: near is not there.
 bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<State>& event) {
   const bool goes_on = run_.options.at_deployed == "pass";
-  if (margin_ > rounded_ && crosses(to.state) && leads()) {
-    // Forces so near the pose are those of rounding: where nothing can happen on the way, it is gone at once.
-    const double edge = next_edge();
-    if (!goes_on && !watched() && edge <= grid_.end()) event = locate_led(edge, h, edge);
-    if (event && event->t == edge) return regular_ = false, true;
-    event.reset();
-    margin_ = stepping::deployed_already;
+  if (margin_ > rounded_ && crosses(to.state) && !system().drives().empty()) {
+    const bool regular = regular_when_deployed(run_.trajectory, to.state);
+    if (!regular && leads()) {
+      // Forces so near the pose are those of rounding: where nothing can happen on the way, it is gone at
+      // once.
+      const double edge = next_edge();
+      if (!goes_on && !watched() && edge <= grid_.end()) event = locate_led(edge, h, edge);
+      if (event && event->t == edge) return regular_ = false, true;
+      event.reset();
+    }
+    if (regular || leads()) margin_ = stepping::deployed_already;
   }
-  if (margin_ > rounded_ && crosses(to.state) && !system().drives().empty() &&
-      regular_when_deployed(run_.trajectory, to.state))
-    margin_ = stepping::deployed_already;
   if (!arrives(to)) return false;
   if (run_.options.at_deployed == "stop" && leads() && !regular_when_deployed(run_.trajectory, to.state))
     event = locate_led(part_end_, h, part_end_);
