@@ -31,6 +31,18 @@ StepControl::StepControl(const Structure& structure, const System& system, const
       f_(system.coordinates()),
       moving_mass_(system.moving_mass()) {}
 
+// What a drive moves now or soon; a stop that holds, friction that sticks and what is held do not.
+bool StepControl::driven(double t) const {
+  if (!system_.rheonomic()) return false;
+  constexpr double soon = 0.01;  // of the largest step: from rest a drive has no rate at once
+  VectorXd rate(system_.constraints());
+  for (const double when : {t, t + soon * largest_}) {
+    system_.target_rate(when, rate);
+    if (!rate.isZero(0)) return true;
+  }
+  return false;
+}
+
 // w . K w over w . M w for x = w or h_0 w', whichever way the energy is, of forces that vary with the pose,
 // damped by as much of them as varies with rates; rods that give are left to methods that stop their waves.
 // Nothing where a swing is too small to matter: with r = K x its frequency is (r . M^-1 r / x . r)^1/2, and
@@ -38,7 +50,7 @@ StepControl::StepControl(const Structure& structure, const System& system, const
 StepControl::Swing StepControl::swing(const State& state) {
   constexpr double small = 1e-6;    // of a length, of a rate: rounding leaves 1e-10 of a stretch
   constexpr double matters = 1e-6;  // of a length, an amplitude
-  if (system_.constant_forces() || bends_ || system_.rheonomic()) return {};  // what is driven swings not
+  if (system_.constant_forces() || bends_ || driven(state.t)) return {};  // what is driven swings not
   const VectorXd still = VectorXd::Zero(system_.elastic_rods() ? std::ssize(system_.giving_rods()) : 0);
   const auto add = [&](const VectorXd& q, const VectorXd& v, double scale) {
     if (system_.elastic_rods())

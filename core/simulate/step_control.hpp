@@ -45,7 +45,8 @@ class StepControl {
 
  private:
   double density(const State& state);  // Q
-  Swing swing(const State& state);     // at rates and accelerations in v_, a_
+  bool driven(double t) const;
+  Swing swing(const State& state);  // at rates and accelerations in v_, a_
   double start(const State& state);
   double clamped(double h) const;
 

@@ -23,9 +23,8 @@ constexpr Index most_coordinates = 300;  // dense algebra within a fraction of a
 // Singular values of unit rows. Round-off leaves 1e-15 of a dependent row; a structure that is so near to a
 // singular pose on purpose (the folded ring of a thousand units: 1e-7) has no digits left to say so.
 constexpr double round_off = 1e-14, meant = 1e-7;
-// What is rigid by its make is farther from a pose in which it moves; rows count as independent above the
-// other.
-constexpr double nearly_free = 1e-3, alone = 1e-2;
+// What is rigid by its make, slender or on short pins, is farther from a pose in which it moves.
+constexpr double nearly_free = 1e-5, alone = 1e-2;
 // Misfits below this let a run of usual length be right to eight digits.
 constexpr double worth_a_word = 3e-13;
 

@@ -199,7 +199,8 @@ class Checker {
   // By sparse elimination. Families of many parts are made to move.
   void check_freedom_of_many() const {
     if (!own_ || elastic_ || warms_ || !system_.drives().empty()) return;
-    if (analyse_mobility(system_, q_).degrees_of_freedom == 0) refuse_to_stand_still("");
+    if (analyse_mobility(system_, q_).degrees_of_freedom == 0)
+      refuse_to_stand_still("if it is meant to move, give its positions all 16 digits; else ");
   }
   void refuse_to_stand_still(const std::string& doubt) const {
     std::vector<std::string> names, members;

@@ -369,6 +369,30 @@ TEST_CASE("adaptive steps follow what an event within a step begins") {
   }
 }
 
+// A mass of 1 kg on 2500 N/m swings at 50 rad/s, whatever holds beside it: a block that friction brings to
+// rest after 0.25 s, a coordinate that is held. x = sin(50 t) / 50, to order 4 in turn.
+TEST_CASE("adaptive steps follow a swing beside what holds") {
+  for (const std::string beside : {"[[structure.nodes]]\nname = 'A'\nposition = [0, 5, 0]\nvelocity = [1, 0, "
+                                   "0]\nmass = 1\n[[constraints]]\nkind = 'line'\n"
+                                   "nodes = ['A']\ndirection = [1, 0, 0]\n[[forces]]\nkind = "
+                                   "'friction'\nnodes = ['A']\ndirection = [1, 0, 0]\nkinetic = 4\n",
+                                   "[[structure.nodes]]\nname = 'A'\nposition = [0, 5, 0]\nmass = "
+                                   "1\n[[constraints]]\nkind = 'coordinate'\nnodes = ['A']\n"
+                                   "direction = [1, 0, 0]\nmotion = 'hold'\n"}) {
+    INFO(beside);
+    const Simulation run = run_scene(
+        "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'O'\nposition = [0, 0, 0]\nfixed = "
+        "true\n[[structure.nodes]]\n"
+        "name = 'B'\nposition = [1, 0, 0]\nvelocity = [1, 0, 0]\nmass = 1\n[[constraints]]\nkind = "
+        "'line'\nnodes = ['B']\ndirection = "
+        "[1, 0, 0]\n[[forces]]\nkind = 'spring'\nnodes = ['O', 'B']\nstiffness = 2500\n" +
+            beside,
+        {"solver.adaptive=true", "solver.step=0.2", "solver.end_time=1"});
+    REQUIRE(run.status == RunStatus::completed);
+    CHECK(end_positions(run)[3] - 1 == Approx(std::sin(50.0) / 50).margin(2e-5));
+  }
+}
+
 // A load that jumps or a blow sets a mass on a spring swinging, at rest before, in steps that follow it; a
 // load that begins to grow does so within a step of 10 rad. At rest nothing is followed.
 TEST_CASE("a swing on springs is told where adaptive steps do not follow what begins it") {
