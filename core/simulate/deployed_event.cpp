@@ -41,6 +41,7 @@ constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 constexpr double extrapolated = 1e-13, fitting = 100;
 // Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
 constexpr int most_lengths = 40, most_behind = 8;
+constexpr int most_failed = 3;  // of them, next to a switch: each takes as long as a hundred that are solved
 
 using Sample = NearDeployed;
 
@@ -275,10 +276,12 @@ class Locator {
     double lo = 0, f_lo = s0 - target;
     const double by_rate = rate0 < 0 ? f_lo / -rate0 : h_;
     double step = target > 0 ? std::min(1.2 * h_, by_rate) : by_rate;
+    int failed = 0;
     for (int it = 0; it < (target > 0 ? most_lengths : most_behind); ++it) {
       State to = from;
       integrator_.restart();
       if (!integrator_.step(to, step).ok()) {
+        if (first_ > 0 && ++failed == most_failed) return false;
         step = target > 0 ? 0.5 * (lo + step) : 1.2 * step;
         continue;
       }
