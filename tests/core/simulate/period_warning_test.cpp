@@ -170,25 +170,25 @@ rods = [{nodes = ["O", "A"], mass = 0, area = 1e-4}, {nodes = ["A", "B"], mass =
 TEST_CASE("the fastest swing of a long row of springs is that of its dense eigenvalues") {
   for (const double spread : {0.0, 0.02, 0.1, 0.2, 0.4, 0.8}) {
     constexpr int count = 90;
-    const auto point_mass = [&](int k) { return 1 + spread * std::sin(1.7 * k * k); };
-    const auto cord_stiffness = [&](int k) { return 700 * (1 + spread * std::cos(2.1 * k * k + 0.3)); };
+    const auto point_mass = [&](int i) { return 1 + spread * std::sin(1.7 * i * i); };
+    const auto cord_stiffness = [&](int i) { return 700 * (1 + spread * std::cos(2.1 * i * i + 0.3)); };
     std::string nodes = "{name = 'N0', position = [0, 0, 0], fixed = true}", line, cords;
-    for (int k = 1; k <= count + 1; ++k) {
-      const std::string name = "N" + std::to_string(k);
-      nodes += ", {name = '" + name + "', position = [" + std::to_string(k) + ", 0, 0], " +
-               (k > count ? "fixed = true}" : "mass = " + number(point_mass(k)) + "}");
-      if (k <= count) line += (k > 1 ? ", '" : "'") + name + "'";
-      cords += "[[forces]]\nkind = 'spring'\nnodes = ['N" + std::to_string(k - 1) + "', '" + name +
-               "']\nstiffness = " + number(cord_stiffness(k)) + "\n";
+    for (int i = 1; i <= count + 1; ++i) {
+      const std::string name = "N" + std::to_string(i);
+      nodes += ", {name = '" + name + "', position = [" + std::to_string(i) + ", 0, 0], " +
+               (i > count ? "fixed = true}" : "mass = " + number(point_mass(i)) + "}");
+      if (i <= count) line += (i > 1 ? ", '" : "'") + name + "'";
+      cords += "[[forces]]\nkind = 'spring'\nnodes = ['N" + std::to_string(i - 1) + "', '" + name +
+               "']\nstiffness = " + number(cord_stiffness(i)) + "\n";
     }
     const auto model = model_of("[structure]\nkind = 'custom'\nnodes = [" + nodes +
                                 "]\n[[constraints]]\nkind = 'line'\nnodes = [" + line +
                                 "]\ndirection = [1, 0, 0]\n" + cords);
     MatrixXd A = MatrixXd::Zero(count, count);  // M^-1/2 K M^-1/2
-    for (int k = 1; k <= count; ++k) {
-      A(k - 1, k - 1) = (cord_stiffness(k) + cord_stiffness(k + 1)) / point_mass(k);
-      if (k < count)
-        A(k - 1, k) = A(k, k - 1) = -cord_stiffness(k + 1) / std::sqrt(point_mass(k) * point_mass(k + 1));
+    for (int i = 1; i <= count; ++i) {
+      A(i - 1, i - 1) = (cord_stiffness(i) + cord_stiffness(i + 1)) / point_mass(i);
+      if (i < count)
+        A(i - 1, i) = A(i, i - 1) = -cord_stiffness(i + 1) / std::sqrt(point_mass(i) * point_mass(i + 1));
     }
     const double square = Eigen::SelfAdjointEigenSolver<MatrixXd>(A).eigenvalues().maxCoeff();
     const State start = initial_state(model->structure, model->system).state;
