@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Steps that do not resolve a swing: which are warned of, and by what numbers.
-#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "core/diagnostics/accuracy.hpp"
+#include "core/math/factors.hpp"
 #include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/study/table.hpp"
@@ -190,7 +190,7 @@ TEST_CASE("the fastest swing of a long row of springs is that of its dense eigen
       if (i < count)
         A(i - 1, i) = A(i, i - 1) = -cord_stiffness(i + 1) / std::sqrt(point_mass(i) * point_mass(i + 1));
     }
-    const double square = Eigen::SelfAdjointEigenSolver<MatrixXd>(A).eigenvalues().maxCoeff();
+    const double square = symmetric_eigenvalues(A).maxCoeff();
     const State start = initial_state(model->structure, model->system).state;
     INFO(spread);
     // A thousandth of w^2 is left.
