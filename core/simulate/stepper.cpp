@@ -245,7 +245,11 @@ std::optional<Crossing> Stepper::Loop::find_crossing(Probe& to, double h) {
     probe.at = length;
     probe.state = now();
     probe.report = step(probe.state, length);
-    if (!probe.report.ok() && !deployment_.empty()) {
+    if (!probe.report.ok() && deployment_.empty()) {  // too long for what swings faster, as a whole
+      probe.state = now();
+      probe.report = step_in_parts(*probing_, probe.state, length, step);
+      if (!probe.report.ok()) unsolved = std::min(unsolved, length);
+    } else if (!probe.report.ok()) {
       double longest = 1.5 * std::max(h, to.at);  // beyond the run's end, not beyond an edge of time
       if (const double edge = grid_.next_edge(now().t); edge < grid_.end())
         longest = std::min(longest, edge - now().t);
