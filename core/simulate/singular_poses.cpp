@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/determined_rows.hpp"
 #include "core/math/factors.hpp"
 #include "core/math/singular_values.hpp"
 
@@ -154,12 +155,19 @@ Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std
 }
 
 bool singular_at_end(const Trajectory& trajectory, double flat) {
+  constexpr double counts = 1e-6;  // with determined_rows, for Jacobians of any size
   const System& system = trajectory.last_model().system;
-  if (std::max(system.constraints(), system.solved_coordinates()) > max_singular_size) return true;
+  const bool large = std::max(system.constraints(), system.solved_coordinates()) > max_singular_size;
+  if (large && flat > counts) return true;
   std::size_t last = trajectory.size() - 1, first = last;
   while (first > 0 && &trajectory.model(first - 1) == &trajectory.model(last)) --first;
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
+  const auto determined = [&](std::size_t state) {
+    system.jacobian(trajectory.node_positions(state), G, scratch);
+    return std::ranges::count(determined_rows(G), 1);
+  };
+  if (large) return determined(last) < determined((first + last) / 2);
   system.jacobian(trajectory.node_positions(last), G, scratch);
   scale_rows(G);
   const VectorXd values = singular_values(MatrixXd(G));

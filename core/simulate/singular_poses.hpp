@@ -50,8 +50,9 @@ class SmallestSingularValue {
 Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std::size_t last);
 
 // The last state's pose has less rank than usual in the run, singular values below `flat` of the largest
-// counting for nothing: deployed poses are located to 1e-9 or so. Assumed where the Jacobian has more than
-// max_singular_size rows or columns.
+// counting for nothing: deployed poses are located to 1e-9 or so. Where the Jacobian has more than
+// max_singular_size rows or columns, by the rows that a state halfway determines and the last one does not,
+// and assumed for a larger `flat`.
 bool singular_at_end(const Trajectory& trajectory, double flat = 1e-6);
 
 // The deployed pose `event`, which follows the last state, is so far from singular ones that its equations

@@ -99,7 +99,6 @@ Probe Stepper::Loop::beyond(const Probe& to, const State& event) {
 
 // A step may get through to a singular pose, with coordinates to half of their digits and rates to none.
 bool Stepper::Loop::singular_at(const State& state) {
-  if (std::max(system().constraints(), system().solved_coordinates()) > max_singular_size) return false;
   run_.trajectory.append(state, {});
   const bool singular = singular_at_end(run_.trajectory);
   run_.trajectory.pop_back();
