@@ -106,7 +106,8 @@ bool Stepper::Loop::singular_at(const State& state) {
 }
 
 std::unique_ptr<Integrator> Stepper::Loop::careful() const {
-  return run_.options.method == "dvm" ? careful_dvm().make(system(), run_.options) : fresh_integrator();
+  const bool low_order = run_.options.method == "generalized_alpha";  // on a motion of its own
+  return low_order ? fresh_integrator() : careful_dvm().make(system(), run_.options);
 }
 
 // Do drives alone say what remains? Found out where it matters, next to the pose.
