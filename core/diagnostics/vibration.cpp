@@ -265,8 +265,9 @@ Solved solve(const AtPose& at) {
   MatrixXd drawn = N0;
   if (N1.cols() > 0) {
     const MatrixXd B = N1 - N0 * (N0.transpose() * at.mass * N1);
-    const Eigen::LDLT<MatrixXd> K11(symmetric(B.transpose() * K * B));
-    drawn -= B * K11.solve(B.transpose() * at.geometric * N0);
+    DenseLu K11;
+    K11.compute(symmetric(B.transpose() * K * B));
+    drawn -= B * K11.solve(MatrixXd(B.transpose() * at.geometric * N0));
   }
   // drawn^T K drawn without the round-off of N_0^T elastic, which is zero.
   const MatrixXd stretched = drawn - N0, small = drawn.transpose() * at.geometric * drawn +

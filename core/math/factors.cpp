@@ -107,6 +107,9 @@ void DenseLu::compute(const MatrixXd& A) {
 VectorXd DenseLu::solve(const VectorXd& b) const {
   return factors_.solve(b);
 }
+MatrixXd DenseLu::solve(const MatrixXd& b) const {
+  return factors_.solve(b);
+}
 
 SparseLu::SparseLu() = default;
 SparseLu::SparseLu(const SparseColumns& A) : factors_(A) {}

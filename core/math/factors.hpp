@@ -67,6 +67,7 @@ class DenseLu {
  public:
   void compute(const MatrixXd& A);
   VectorXd solve(const VectorXd& b) const;
+  MatrixXd solve(const MatrixXd& b) const;
 
  private:
   Eigen::PartialPivLU<MatrixXd> factors_;
