@@ -12,11 +12,11 @@
 namespace unfurl {
 namespace {
 
-// States are solved at fold angles between `farthest` and a twelfth of it [rad]. Below 2.5e-3 round-off in
-// the hinges, 1e-16/fold, begins to show; at nine points below 3e-2 the extrapolation error of a six-unit
-// ring is of the order (0.01)^9. The fold rate varies on the scale sin(pi/n) of the fold angle: `farthest` is
-// halved until the rate changes by less than `even` over its outer half.
-constexpr double farthest = 3e-2, span = 12, even = 0.1, smallest_farthest = 1e-4;
+// States are solved at fold angles between `farthest_sample` and a twelfth of it [rad]. Below 2.5e-3
+// round-off in the hinges, 1e-16/fold, begins to show; at nine points below 3e-2 the extrapolation error of a
+// six-unit ring is of the order (0.01)^9. The fold rate varies on the scale sin(pi/n) of the fold angle: the
+// farthest is halved until the rate changes by less than `even` over its outer half.
+constexpr double span = 12, even = 0.1, smallest_farthest = 1e-4;
 constexpr int points = 9;
 // What the structure carries may move on a shorter scale than it unfolds: nets that strike, rods that swing.
 // Where the rates that all samples give and those of one degree less differ by more than this share of the
@@ -31,17 +31,17 @@ constexpr double smooth_force = 1e-2;
 constexpr double short_enough = 2.3e-3;
 // Released at rest from the sine s_0, time goes like sqrt(1 - s / s_0): samples keep well away from that.
 constexpr double from_start = 0.25;
-// Samples lie no farther out than this share of where the run last switched, or time had an edge. Where they
-// then say less of the pose than this of its rates, those behind it may tell more.
-constexpr double from_switch = 0.95, well_known = 1e-10;
+// Where the run last switched, or time had an edge, nearer by, the motion is followed back from there, to a
+// little farther out than the samples. What makes it begin there may change its rates sooner than it does on
+// the way of a run: 140 rad/s^2 at 4.5 rad/s leave 2e-11 s at twice as uneven a rate.
+constexpr double from_switch = 0.95, farther = 1.05, even_behind_switch = 0.05;
 constexpr int most_stations = 200;
 constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 // Shares of a constraint's length: errors of the extrapolated pose above the first are taken away, by motions
 // of up to the second times as much.
 constexpr double extrapolated = 1e-13, fitting = 100;
 // Lengths tried of a step that is to end near a sine: starts next to the pose need short ones.
-constexpr int most_lengths = 40, most_behind = 8;
-constexpr int most_failed = 3;  // of them, next to a switch: each takes as long as a hundred that are solved
+constexpr int most_lengths = 40;
 
 using Sample = NearDeployed;
 
@@ -54,13 +54,14 @@ VectorXd at_zero(const std::vector<Sample>& samples, const VectorXd& shares, Vec
 
 class Locator {
  public:
-  Locator(const Trajectory& trajectory, Integrator& integrator, double h, std::size_t first, double edge)
+  Locator(const Trajectory& trajectory, const Model& model, Integrator& integrator, double h,
+          std::size_t first)
       : trajectory_(trajectory),
+        system_(model.system),
         integrator_(integrator),
         h_(h),
         first_(first),
-        edge_(edge),
-        followed_(trajectory.last_model().system),
+        followed_(model.system),
         index1_(followed_, true) {}
 
   std::optional<State> locate() {
@@ -70,7 +71,7 @@ class Locator {
 
   // At a time before the pose, next to it.
   std::optional<State> locate_before(double t) {
-    if (!find_samples() || side_ < 0) return std::nullopt;
+    if (!find_samples()) return std::nullopt;
     for (Sample& sample : samples_) sample.sine = t - sample.state.t;
     if (std::ranges::any_of(samples_, [](const Sample& s) { return !(s.sine > 0); })) return std::nullopt;
     const VectorXd shares = shares_at_zero(samples_, static_cast<int>(samples_.size()) - 1);
@@ -94,43 +95,34 @@ class Locator {
     const Deployment& deployment = trajectory_.structure().deployment;
     const double start = deployment.remaining(trajectory_.node_positions(0), trajectory_.state(0).angles),
                  room = sine(trajectory_.state(first_));
-    const double far = std::min(farthest, from_start * start);
-    const bool barred = first_ > 0 && from_switch * room < far;
+    double far = std::min(farthest_sample, from_start * start);
+    const bool back = first_ > 0 && from_switch * room < far;
+    if (back) go_back(farther * far);
+    // The samples that say most of the pose.
     double least = std::numeric_limits<double>::infinity();
-    if (!barred)
-      least = search(far, smooth_enough);
-    else if (from_switch * room > smallest_farthest)
-      least = search(from_switch * room, well_known);
-    if (barred && !(least < well_known)) {
-      std::vector<Sample> before = std::move(best_);
-      side_ = -1;
-      resolved_ = trajectory_.size() - 1;
-      stations_.clear();
-      const double of_step = -sine_rate(trajectory_.state(resolved_)) * trajectory_.options().step;
-      if (!(search(std::min(farthest, of_step), well_known) < least)) {
-        best_ = std::move(before);
-        side_ = 1;
+    for (far = reach(far, back ? even_behind_switch : even);; far *= 0.25) {
+      sample(far);
+      const double rough = roughness();
+      if (rough < 0.1 * least || best_.empty()) {
+        best_ = samples_;
+        least = rough;
       }
+      if (!(least > smooth_enough) || far < 4 * smallest_farthest) break;
     }
     samples_ = std::move(best_);
     return samples_.size() >= 3;
   }
 
-  // The samples that say most of the pose; any that say `enough` will do.
-  double search(double most, double enough) {
-    const double better = enough < smooth_enough ? 1.0 : 0.1;
-    best_.clear();
-    double least = std::numeric_limits<double>::infinity();
-    for (double far = reach(most);; far *= 0.25) {
-      sample(far);
-      const double rough = roughness();
-      if (rough < better * least || best_.empty()) {
-        best_ = samples_;
-        least = rough;
-      }
-      if (!(least > enough) || (side_ < 0 && samples_.size() < 3) || far < 4 * smallest_farthest) break;
+  // Stations of the motion that leads to the first state, until so far out.
+  void go_back(double out) {
+    State from = trajectory_.state(first_);
+    for (int i = 0; i < most_stations && sine(from) < out; ++i) {
+      const double rate = sine_rate(from), step = std::min(h_, (out - sine(from)) / -rate);
+      if (!(rate < 0) || !add_station(from, -step, sine(from), std::numeric_limits<double>::infinity()))
+        break;
+      from = stations_.back().state;
     }
-    return least;
+    std::ranges::reverse(stations_);
   }
 
   void sample(double far) {
@@ -138,7 +130,7 @@ class Locator {
     const double near = far / span;
     for (int i = 0; i < points; ++i) {
       const double u = 0.5 - 0.5 * std::cos(pi * (i + 0.5) / points);
-      solve_to(side_ * (far + u * (near - far)));
+      solve_to(far + u * (near - far));
     }
   }
 
@@ -200,14 +192,14 @@ class Locator {
     out.tension_error += of_samples;
   }
 
-  double reach(double far) {
+  double reach(double far, double most_uneven) {
     for (; far > smallest_farthest; far *= 0.5) {
       samples_.clear();
-      solve_to(side_ * far);
-      solve_to(side_ * 0.5 * far);
+      solve_to(far);
+      solve_to(0.5 * far);
       if (samples_.size() < 2) continue;
       const double outer = sine_rate(samples_[0].state), inner = sine_rate(samples_[1].state);
-      if (std::abs(outer - inner) < even * std::abs(inner)) break;
+      if (std::abs(outer - inner) < most_uneven * std::abs(inner)) break;
     }
     samples_.clear();
     return far;
@@ -225,7 +217,7 @@ class Locator {
     system().expand_rate(s.w, v_);
     return trajectory_.structure().deployment.remaining_rate(q_, v_);
   }
-  const System& system() const { return trajectory_.last_model().system; }
+  const System& system() const { return system_; }
 
   // How far the change of the sine from one state to the next differs from h (r_0 + r_1) / 2, as a share.
   double unevenness(const State& a, const State& b) {
@@ -257,14 +249,11 @@ class Locator {
 
   // From the last state before `target`, in one step that is short enough or with stations on the way.
   void solve_to(double target) {
-    if (target < 0) {  // in one step over the pose
-      step_to(last_before(target), target, std::numeric_limits<double>::infinity());
-      return;
-    }
     for (int i = 0; i < most_stations; ++i) {
       const State from = last_before(target);
       if (step_to(from, target, short_enough)) return;
-      if (!add_station(from, target)) break;
+      const double rate = sine_rate(from), half = 0.5 * (sine(from) - target);
+      if (!add_station(from, std::min(h_, rate < 0 ? half / -rate : h_), 1.0001 * target, sine(from))) break;
     }
     step_to(last_before(target), target, std::numeric_limits<double>::infinity());
   }
@@ -274,20 +263,16 @@ class Locator {
   bool step_to(const State& from, double target, double most_uneven) {
     const double s0 = sine(from), rate0 = sine_rate(from);
     double lo = 0, f_lo = s0 - target;
-    const double by_rate = rate0 < 0 ? f_lo / -rate0 : h_;
-    double step = target > 0 ? std::min(1.2 * h_, by_rate) : by_rate;
-    int failed = 0;
-    for (int it = 0; it < (target > 0 ? most_lengths : most_behind); ++it) {
+    double step = std::min(1.2 * h_, rate0 < 0 ? f_lo / -rate0 : h_);
+    for (int it = 0; it < most_lengths; ++it) {
       State to = from;
       integrator_.restart();
       if (!integrator_.step(to, step).ok()) {
-        if (first_ > 0 && ++failed == most_failed) return false;
-        step = target > 0 ? 0.5 * (lo + step) : 1.2 * step;
+        step = 0.5 * (lo + step);
         continue;
       }
       const double f = sine(to) - target;
-      if (std::abs(f) < 0.02 * std::abs(target)) {
-        if (to.t > edge_) return false;
+      if (std::abs(f) < 0.02 * target) {
         if (unevenness(from, to) > most_uneven) return false;
         keep(f + target, std::move(to));
         return true;
@@ -303,16 +288,14 @@ class Locator {
     return false;
   }
 
-  // A state between `from` and the target.
-  bool add_station(const State& from, double target) {
-    const double rate = sine_rate(from);
-    double step = std::min(h_, rate < 0 ? 0.5 * (sine(from) - target) / -rate : h_);
+  // A state that a step of this length or a shorter one leads to, between two sines.
+  bool add_station(const State& from, double step, double low, double high) {
     for (int it = 0; it < 12; ++it, step *= 0.6) {
       State to = from;
       integrator_.restart();
       if (!integrator_.step(to, step).ok()) continue;
       const double at = sine(to);
-      if (!(at > 1.0001 * target && at < sine(from)) || unevenness(from, to) > short_enough) continue;
+      if (!(at > low && at < high) || unevenness(from, to) > short_enough) continue;
       stations_.push_back({at, std::move(to)});
       return true;
     }
@@ -371,13 +354,12 @@ class Locator {
   }
 
   const Trajectory& trajectory_;
+  const System& system_;
   Integrator& integrator_;
   double h_;
   std::size_t first_;
-  double edge_;
   System followed_;
   Index1 index1_;
-  double side_ = 1;  // that samples are taken on: before the pose (1) or behind it (-1)
   std::vector<Sample> samples_, best_;
   std::vector<Sample> stations_;  // solved on the way, by falling sine
   std::size_t resolved_ = 0;      // the last state of the run to start from
@@ -386,13 +368,13 @@ class Locator {
 
 }  // namespace
 
-std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
-                                     std::size_t first, double edge) {
-  return Locator(trajectory, integrator, h, first, edge).locate();
+std::optional<State> locate_deployed(const Trajectory& trajectory, const Model& model, Integrator& integrator,
+                                     double h, std::size_t first) {
+  return Locator(trajectory, model, integrator, h, first).locate();
 }
-std::optional<State> locate_before_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
-                                            std::size_t first, double t) {
-  return Locator(trajectory, integrator, h, first, t).locate_before(t);
+std::optional<State> locate_before_deployed(const Trajectory& trajectory, const Model& model,
+                                            Integrator& integrator, double h, std::size_t first, double t) {
+  return Locator(trajectory, model, integrator, h, first).locate_before(t);
 }
 
 }  // namespace unfurl

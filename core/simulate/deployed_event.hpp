@@ -10,19 +10,21 @@
 
 namespace unfurl {
 
+inline constexpr double farthest_sample = 3e-2;  // from the pose, as the sine of what is left
+
 // The state at which the fold angle passes zero, found from solved states only. That pose is singular: a step
 // that lands on it does not converge. So shortened steps are solved to several small fold angles on the near
 // side, and time, coordinates, velocities and multipliers, which are smooth functions of sin(fold), are
 // extrapolated from them to 0. The trajectory's last state must lie before the event, its next step (of size
 // h) at or behind it. From its state `first` on the motion is smooth: no sample sets out from before that.
-// Where it is too near the pose, samples are taken behind the pose as well, up to `edge`, the next time at
-// which something begins or ends. Where drives lead there, driven_deployed.hpp does.
-std::optional<State> locate_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
-                                     std::size_t first = 0,
-                                     double edge = std::numeric_limits<double>::infinity());
+// Where it is too near the pose, samples are of the motion that would have led to that state by what acts
+// then: `model`, which the integrator is for, is the trajectory's last one but for what begins or ends before
+// (pieces_at). Where drives lead there, driven_deployed.hpp does.
+std::optional<State> locate_deployed(const Trajectory& trajectory, const Model& model, Integrator& integrator,
+                                     double h, std::size_t first);
 // A state next to that pose, at a time before it, by the same states.
-std::optional<State> locate_before_deployed(const Trajectory& trajectory, Integrator& integrator, double h,
-                                            std::size_t first, double t);
+std::optional<State> locate_before_deployed(const Trajectory& trajectory, const Model& model,
+                                            Integrator& integrator, double h, std::size_t first, double t);
 
 // A pose next to the deployed one, with its multipliers, and the sine of its fold angle.
 struct NearDeployed {

@@ -76,7 +76,9 @@ bool Stepper::Loop::edge_comes_first(Probe& to, double h, std::optional<State>& 
   const auto edge = edge_after(edges, now().t);
   const double t = edge->jump ? before_jump(edge->t) : edge->t;
   const std::size_t first = smooth_since();
-  std::optional<State> there = locate_before_deployed(run_.trajectory, *careful(), h, first, t);
+  const std::shared_ptr<const Model> smooth = smooth_model(first);
+  std::optional<State> there =
+      locate_before_deployed(run_.trajectory, *smooth, *careful(*smooth), h, first, t);
   if (!there || !(fold(*there) > apart)) return false;
   to = {.at = t - now().t, .state = std::move(*there)};
   part_end_ = t;
@@ -105,9 +107,29 @@ bool Stepper::Loop::singular_at(const State& state) {
   return singular;
 }
 
-std::unique_ptr<Integrator> Stepper::Loop::careful() const {
+std::unique_ptr<Integrator> Stepper::Loop::careful(const Model& model) const {
   const bool low_order = run_.options.method == "generalized_alpha";  // on a motion of its own
-  return low_order ? fresh_integrator() : careful_dvm().make(system(), run_.options);
+  const Method& method = low_order ? *find_method(run_.options.method) : careful_dvm();
+  auto integrator = method.make(model.system, run_.options);
+  if (contradictions_) integrator->expect_contradictions();
+  return integrator;
+}
+
+// By what is prescribed from a state on, where that is near the pose: what began or ended there is nothing
+// then.
+std::shared_ptr<const Model> Stepper::Loop::smooth_model(std::size_t first) {
+  const bool nearby = first > 0 && fold(run_.trajectory.state(first)) < 1.1 * farthest_sample;
+  if (!nearby || time_edges(model().structure, run_.options.step).empty()) return present_;
+  Structure structure = pieces_at(model().structure, run_.trajectory.time(first));
+  System system(structure, run_.options.eliminate_linear);
+  return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+}
+
+// By shortened steps.
+std::optional<State> Stepper::Loop::locate_near(double h) {
+  const std::size_t first = smooth_since();
+  const std::shared_ptr<const Model> smooth = smooth_model(first);
+  return locate_deployed(run_.trajectory, *smooth, *careful(*smooth), h, first);
 }
 
 // Do drives alone say what remains? Found out where it matters, next to the pose.
@@ -124,9 +146,7 @@ std::optional<State> Stepper::Loop::locate_led(double guess, double h, double ed
       locate_driven(run_.trajectory, [this] { return fresh_integrator(); }, {guess, h, edge});
   if (!event || event->t < edge) return event;
   // Multipliers are functions of the pose rather than of time where that comes to rest.
-  const auto integrator = fresh_integrator();
-  if (const auto near = locate_deployed(run_.trajectory, *integrator, h, smooth_since(), edge))
-    event->lambda = near->lambda;
+  if (const auto near = locate_near(h)) event->lambda = near->lambda;
   return event;
 }
 
@@ -135,7 +155,7 @@ std::optional<State> Stepper::Loop::locate(double h, double latest) {
   regular_ =
       reached && !singular_at(*reached) && !(leads() && !regular_when_deployed(run_.trajectory, *reached));
   if (regular_) return reached;
-  std::optional<State> event = locate_deployed(run_.trajectory, *careful(), h, smooth_since(), next_edge());
+  std::optional<State> event = locate_near(h);
   if (!leads() && !event && reached) event = std::move(reached), regular_ = true;
   // So near the pose the motion at hand leads there.
   const double left = fold(now()), rate = remaining_rate(model(), now());

@@ -433,7 +433,9 @@ class Stepper::Loop {
   std::size_t smooth_since() const;
   bool edge_comes_first(Probe& to, double h, std::optional<State>& event);
   bool singular_at(const State& state);
-  std::unique_ptr<Integrator> careful() const;
+  std::unique_ptr<Integrator> careful(const Model& model) const;
+  std::shared_ptr<const Model> smooth_model(std::size_t first);
+  std::optional<State> locate_near(double h);
   Probe beyond(const Probe& to, const State& event);
   void come_nearer(const State& state);
   std::optional<State> locate(double h, double latest);

@@ -64,6 +64,7 @@ void add_points_of_spline(const TimeFunction& f, double step, std::vector<TimeEd
 void add_edges(const TimeFunction& f, double step, std::vector<TimeEdge>& edges) {
   switch (f.kind) {
     case TimeFunction::Kind::constant:
+    case TimeFunction::Kind::piece:
       return;
     case TimeFunction::Kind::rate:
       edges.push_back({f.start, f.ramp == 0 && f.rate != 0, f.ramp == 0 && f.rate != 0});
@@ -84,6 +85,15 @@ void add_edges(const TimeFunction& f, double step, std::vector<TimeEdge>& edges)
 }
 
 }  // namespace
+
+Structure pieces_at(Structure structure, double t) {
+  const auto take = [t](TimeFunction& f) { f = f.piece_at(t); };
+  for (Constraint& c : structure.constraints) take(c.target);
+  for (Stop& stop : structure.stops) take(stop.reel);
+  for (Rod& rod : structure.rods) take(rod.warming);
+  for (Force& f : structure.forces) take(f.size), take(f.unstressed), take(f.motor.command);
+  return structure;
+}
 
 std::vector<TimeEdge> time_edges(const Structure& structure, double step) {
   std::vector<TimeEdge> edges;

@@ -46,6 +46,9 @@ inline bool same_instant(double before, double after) {
 //                    than at most others (a spike, a corner), lest a step pass over them.
 std::vector<TimeEdge> time_edges(const Structure& structure, double step);
 
+// A structure for which what it prescribes at t, and until the next edge, is so at all times.
+Structure pieces_at(Structure structure, double t);
+
 // The first of them behind a time.
 inline std::vector<TimeEdge>::const_iterator edge_after(const std::vector<TimeEdge>& edges, double t) {
   return std::upper_bound(edges.begin(), edges.end(), t,

@@ -65,7 +65,56 @@ double spline_part(const TimeFunction& f, int order, double t) {
   return a * f.values[i] + b * f.values[i + 1] + h * h / 6 * (a * (a * a - 1) * p + b * (b * b - 1) * q);
 }
 
+double polynomial(const std::vector<double>& c, int order, double x) {
+  double sum = 0;
+  for (std::size_t k = c.size(); k-- > static_cast<std::size_t>(order);) {
+    double factor = 1;
+    for (int i = 0; i < order; ++i) factor *= static_cast<double>(k) - i;
+    sum = sum * x + factor * c[k];
+  }
+  return sum;
+}
+
+std::vector<double> rate_piece(const TimeFunction& f, double t) {
+  const double ramp = f.ramp;
+  if (t < f.start) return {};
+  if (ramp > 0 && t < f.start + ramp)
+    return {0, 0, 0, f.rate / (ramp * ramp), -0.5 * f.rate / (ramp * ramp * ramp)};
+  return {-0.5 * f.rate * ramp, f.rate};
+}
+
+std::vector<double> smooth_piece(const TimeFunction& f, double t) {
+  if (t < f.start) return {};
+  if (!(t < f.start + f.duration)) return {f.rise};
+  const double d = f.duration, third = f.rise / (d * d * d);
+  return {0, 0, 0, 10 * third, -15 * third / d, 6 * third / (d * d)};
+}
+
+// From the point before t on.
+std::vector<double> piece_of_table(TimeFunction& f, double t) {
+  const std::vector<double>&x = f.times, &y = f.values;
+  if (t < x.front()) return {y.front()};
+  if (t >= x.back()) return {y.back()};
+  const std::size_t i = interval(x, t);
+  const double h = x[i + 1] - x[i], slope = (y[i + 1] - y[i]) / h;
+  f.start = x[i];
+  if (f.bends.empty()) return {y[i], slope};
+  const double p = f.bends[i], q = f.bends[i + 1];
+  return {y[i], slope - h / 6 * (2 * p + q), 0.5 * p, (q - p) / (6 * h)};
+}
+
 }  // namespace
+
+TimeFunction TimeFunction::piece_at(double t) const {
+  t += 4 * std::numeric_limits<double>::epsilon() * std::abs(t);  // behind what rounding puts there
+  TimeFunction f = *this;
+  f.values = kind == Kind::rate               ? rate_piece(f, t)
+             : kind == Kind::smooth           ? smooth_piece(f, t)
+             : moves() && kind != Kind::piece ? piece_of_table(f, t)
+                                              : values;
+  if (moves()) f.kind = Kind::piece;
+  return f;
+}
 
 double TimeFunction::derivative(int order, double t) const {
   const double base = order == 0 ? offset : 0.0;
@@ -80,6 +129,8 @@ double TimeFunction::derivative(int order, double t) const {
       return base + spline_part(*this, order, t);
     case Kind::linear:
       return base + linear_part(*this, order, t);
+    case Kind::piece:
+      return base + polynomial(values, order, t - start);
   }
   return base;
 }

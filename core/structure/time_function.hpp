@@ -17,8 +17,9 @@ namespace unfurl {
 //             continuously differentiable between them
 //   linear    straight lines through the points, held beyond its ends; a time that stands twice is a jump, f
 //             there is that behind it. For loads; not for drives, whose velocity must not jump
+//   piece     sum of values[k] (t - start)^k, at all times: one of the others from edge to edge
 struct TimeFunction {
-  enum class Kind { constant, rate, smooth, spline, linear };
+  enum class Kind { constant, rate, smooth, spline, linear, piece };
 
   Kind kind = Kind::constant;
   double offset = 0.0;
@@ -32,6 +33,8 @@ struct TimeFunction {
 
   double operator()(double t) const { return derivative(0, t); }
   double derivative(int order, double t) const;  // order 0, 1, 2
+  // What it is at t and until something of it ends, as if that had been and were to be so at all times.
+  TimeFunction piece_at(double t) const;
   bool moves() const { return kind != Kind::constant; }
   bool operator==(const TimeFunction&) const = default;
 };

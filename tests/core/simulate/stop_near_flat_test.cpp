@@ -95,6 +95,25 @@ TEST_CASE("a stop next to the flat pose that is passed is met when the path meet
   check_against_path("pass");
 }
 
+// Of 10 m/s; an angle is known to some 1e-10 next to the pose, and what that takes of a rate to a hundred
+// times as much.
+TEST_CASE("a load that begins shortly before the flat pose leaves a ring the speed that the path knows") {
+  for (const char* begin : {"0.158", "0.16", "0.1605", "0.16065"})
+    for (const double step : {0.01, 0.004}) {
+      CAPTURE(begin, step);
+      const Scene scene = ring({key("constraints[0].min=", -1.0), key("solver.step=", step),
+                                std::string("forces[0].times=[0,") + begin + ",0.26]"});
+      const auto model = build_model(scene);
+      const Simulation full = simulate(model, scene.solver), path = simulate_on_path(model, scene.solver);
+      REQUIRE(full.status == RunStatus::deployed);
+      REQUIRE(path.status == RunStatus::deployed);
+      const std::size_t end = full.trajectory.size() - 1;
+      CHECK(full.trajectory.end_time() == Approx(path.trajectory.end_time()).epsilon(0).margin(1e-11));
+      CHECK((full.trajectory.velocities(end) - path.trajectory.velocities(path.trajectory.size() - 1))
+                .lpNorm<Eigen::Infinity>() < 1e-7);
+    }
+}
+
 // A load that begins right behind the flat pose leaves no steps beyond it to go by.
 TEST_CASE("a stop next to the flat pose that no step can tell of is met early, by less than a warning says") {
   for (const double least : {0.001, 0.0005}) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Functions over time: their derivatives, and what tables of motion are at and beyond their ends.
+#include <array>
 #include <catch2/catch.hpp>
 #include <vector>
 
+#include "core/math/lagrange.hpp"
 #include "core/structure/time_function.hpp"
 
 using namespace unfurl;
@@ -41,6 +43,32 @@ TEST_CASE("every kind of function over time has the derivatives that it says") {
   check_derivatives(linear, {0.05, 0.3, 0.9, 1.5});
   CHECK(linear(9) == 4);
   check_derivatives(make_spline({0.1, 0.5, 1.3, 1.4}, {2, 1, 4, 3.7}), {0.05, 0.3, 0.9, 1.35, 1.5});
+}
+
+// Within a piece it is the function; all over, what six of its values there say, of which a piece has no
+// higher degree: Lagrange's weights at three lengths of it outside are some 1e5.
+TEST_CASE("a piece of a function over time goes on before and behind it") {
+  TimeFunction rate, smooth, linear;
+  rate.kind = TimeFunction::Kind::rate, rate.offset = 0.3, rate.rate = -1.7, rate.ramp = 0.6,
+  rate.start = 0.2;
+  smooth.kind = TimeFunction::Kind::smooth, smooth.offset = 0.3, smooth.rise = 1.1, smooth.start = 0.2;
+  smooth.duration = 0.6;
+  linear.kind = TimeFunction::Kind::linear, linear.times = {0.2, 0.2, 0.8, 0.8}, linear.values = {2, 1, 4, 3};
+  for (const TimeFunction& f : {rate, smooth, linear, make_spline({0.2, 0.8, 1.3}, {2, 1, 4})})
+    for (const auto& [begin, end] : {std::array{-1.0, 0.2}, std::array{0.2, 0.8}, std::array{1.3, 2.0}}) {
+      const TimeFunction piece = f.piece_at(begin);
+      const auto node = [from = begin, length = end - begin](std::size_t i) {
+        return from + length * (0.05 + 0.18 * static_cast<double>(i));
+      };
+      for (const double t : {node(0), node(3), node(5)})
+        for (const int order : {0, 1, 2})
+          CHECK(piece.derivative(order, t) == Approx(f.derivative(order, t)).epsilon(0).margin(1e-13));
+      for (const double t : {-2.0, 0.0, 0.5, 1.0, 3.0}) {
+        double told = 0;
+        for (std::size_t k = 0; k < 6; ++k) told += lagrange_weight(k, 6, t, node) * f(node(k));
+        CHECK(piece(t) == Approx(told).epsilon(1e-9).margin(1e-9));
+      }
+    }
 }
 
 TEST_CASE("a table of motion begins and ends at rest, and holds its last value") {
