@@ -19,9 +19,10 @@ inline constexpr double farthest_sample = 3e-2;  // from the pose, as the sine o
 // h) at or behind it. From its state `first` on the motion is smooth: no sample sets out from before that.
 // Where it is too near the pose, samples are of the motion that would have led to that state by what acts
 // then: `model`, which the integrator is for, is the trajectory's last one but for what begins or ends before
-// (pieces_at). Where drives lead there, driven_deployed.hpp does.
+// (pieces_at). Where drives lead there, driven_deployed.hpp does. What remains of a measure that is `touched`
+// there, as it rises again behind the pose, falls like the sine or like its square.
 std::optional<State> locate_deployed(const Trajectory& trajectory, const Model& model, Integrator& integrator,
-                                     double h, std::size_t first);
+                                     double h, std::size_t first, bool touched = false);
 // A state next to that pose, at a time before it, by the same states.
 std::optional<State> locate_before_deployed(const Trajectory& trajectory, const Model& model,
                                             Integrator& integrator, double h, std::size_t first, double t);

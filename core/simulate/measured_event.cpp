@@ -77,6 +77,8 @@ std::optional<Dip> step_to_dip(const Model& model, const std::function<std::uniq
   const std::unique_ptr<Integrator> integrator = fresh();
   constexpr int most = 60;
   constexpr double settled = 1e-14;  // of the step
+  constexpr double nearly =
+      1e-6;  // rounding, of coordinates next to a singular pose or a method's, hides more
   std::optional<Dip> touched;
   for (int i = 0; i < most && (touched || may_dip(low, high)); ++i) {
     // The rate's zero by its secant, and every third time by halves.
@@ -84,14 +86,17 @@ std::optional<Dip> step_to_dip(const Model& model, const std::function<std::uniq
     const double length = i % 3 == 2 ? 0.5 * (low.length + high.length) : secant;
     State state = from;
     integrator->restart();
-    if (!(length > low.length && length < high.length) || !integrator->step(state, length).ok())
-      return touched;
+    if (!(length > low.length && length < high.length)) return touched;
+    const StepReport report = integrator->step(state, length);
+    const Dip unsolved{.length = length, .touches = true, .solved = false};
+    if (!report.ok() || report.weak_end) return touched ? touched : unsolved;
     const At middle = at(length, state);
     if (middle.left < -rounded) return Dip{length};
     const double change = touched ? std::abs(length - touched->length) : h;
     if (middle.left <= rounded) touched = Dip{length, true};
     if (change <= settled * h) return touched;
     (middle.rate < 0 ? low : high) = middle;
+    if (!touched && std::max(low.left, high.left) < nearly && !may_dip(low, high)) return unsolved;
   }
   return touched;
 }

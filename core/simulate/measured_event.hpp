@@ -29,12 +29,13 @@ std::optional<State> step_to_deployed(const Model& model, Integrator& integrator
 
 // Where a step of size h leads from one side of the deployed pose to the same side, `to`, but may have been
 // beyond it in between: the length of a step that ends there, or in the pose itself where it is touched, at a
-// dead centre of the measure. Nothing where it was not, or the pose is not regular. `fresh`: makes the
-// integrator, which few steps need. `rounded`: what of the way is nothing. `behind`: a solved part of the
-// step to look behind; null: all of it.
+// dead centre of the measure; not `solved` where steps that end so near fail or say too little, and it may
+// not get there. Nothing where it was not, or the pose is not regular. `fresh`: makes the integrator, which
+// few steps need. `rounded`: what of the way is nothing. `behind`: a solved part of the step to look behind;
+// null: all of it.
 struct Dip {
   double length;
-  bool touches = false;
+  bool touches = false, solved = true;
 };
 std::optional<Dip> step_to_dip(const Model& model, const std::function<std::unique_ptr<Integrator>()>& fresh,
                                const State& from, const State& to, double h, double rounded,

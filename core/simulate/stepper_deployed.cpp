@@ -126,10 +126,21 @@ std::shared_ptr<const Model> Stepper::Loop::smooth_model(std::size_t first) {
 }
 
 // By shortened steps.
-std::optional<State> Stepper::Loop::locate_near(double h) {
+std::optional<State> Stepper::Loop::locate_near(double h, bool touched) {
   const std::size_t first = smooth_since();
   const std::shared_ptr<const Model> smooth = smooth_model(first);
-  return locate_deployed(run_.trajectory, *smooth, *careful(*smooth), h, first);
+  return locate_deployed(run_.trajectory, *smooth, *careful(*smooth), h, first, touched);
+}
+
+// The deployed pose that what remains touches, by a step that ends there or, where it is singular, by those
+// next to it; nothing where it is not reached.
+std::optional<State> Stepper::Loop::locate_touched(const Dip& dip, double h) {
+  constexpr double reached = 1e-9;
+  std::optional<State> event = now();
+  regular_ = dip.solved && fresh_integrator()->step(*event, dip.length).ok() && !singular_at(*event);
+  if (regular_) return event;
+  event = locate_near(h, true);
+  return event && fold(*event) <= reached && singular_at(*event) ? event : std::nullopt;
 }
 
 // Do drives alone say what remains? Found out where it matters, next to the pose.
@@ -279,13 +290,9 @@ bool Stepper::Loop::find_deployed(Probe& to, double& h, std::optional<State>& ev
     if (!dip) return true;
   }
   touched_ = dip && dip->touches;
-  if (touched_) {
-    event = now();
-    regular_ = fresh_integrator()->step(*event, dip->length).ok();
-    if (!regular_) event.reset();
-  } else {
-    event = locate(dip ? dip->length : h, std::numeric_limits<double>::infinity());
-  }
+  event = touched_ ? locate_touched(*dip, h)
+                   : locate(dip ? dip->length : h, std::numeric_limits<double>::infinity());
+  if (!event && touched_ && !dip->solved) return true;
   if (edge_comes_first(to, h, event)) return true;
   if (event && event->t > grid_.end()) return event.reset(), true;
   return event || fail("the deployed pose was passed but its time could not be located");

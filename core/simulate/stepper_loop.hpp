@@ -435,7 +435,8 @@ class Stepper::Loop {
   bool singular_at(const State& state);
   std::unique_ptr<Integrator> careful(const Model& model) const;
   std::shared_ptr<const Model> smooth_model(std::size_t first);
-  std::optional<State> locate_near(double h);
+  std::optional<State> locate_near(double h, bool touched = false);
+  std::optional<State> locate_touched(const Dip& dip, double h);
   Probe beyond(const Probe& to, const State& event);
   void come_nearer(const State& state);
   std::optional<State> locate(double h, double latest);
