@@ -407,8 +407,8 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   freeze(pose_, report);
   if (tight_ && frozen_) saddle_.weakest_pivot(needed_pivot_);
   if (system_.rheonomic()) system_.target_rate(state.t + h, rate_);
-  if (!eq_.rods.still(unheld, state.t + h, h, pose_, {G_, p1_, rate_}, w1_, mu_))
-    saddle_.solve(p1_, rate_, w1_, mu_);
+  saddle_.solve(p1_, rate_, w1_, mu_);
+  eq_.rods.still(unheld, still, state.t + h, h, pose_, G_, w1_, mu_);
   report.right_hand_sides += 1;
   if (!frozen_ || !w1_.allFinite()) {
     report.status = StepStatus::not_finite;

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "core/forces/elastic_rods.hpp"
 #include "core/integrators/galerkin.hpp"
-#include "core/math/least_energy.hpp"
+#include "core/math/saddle_solver.hpp"
 #include "core/system/system.hpp"
 
 namespace unfurl {
@@ -36,30 +35,29 @@ class ElasticStages {
   double h_omega(Index i, double h, const SparseRows& directions) const;
   // N' / omega of rod i moving alone: the amplitude of its wave where its velocity is the wave's [N].
   double rate_over_omega(Index i, double t, const VectorXd& w, const SparseRows& directions) const;
-  // These rods, whose rows D are those of `rods`, are rigid in find_still_forces(). False: it cannot be
-  // asked.
-  bool take_as_rigid(std::vector<Index> rods, const SparseRows& G, const SparseRows& D);
+  // These rods, whose rows D = d|d|/dz are those of `rods`, are stiff in find_still_forces(): modes of
+  // h omega > `stiff` of them. False: it cannot be asked.
+  bool take_as_stiff(std::vector<Index> rods, double h, double stiff, const SparseRows& G,
+                     const SparseRows& D);
   // Rods whose waves turn many times in a step, h omega > `fast`, become constraints of index 3, whose
-  // velocities the Gauss points alone do not hold: what is left of D w at a step's end, D = d|d|/dz, would
-  // grow from step to step. Here it is taken out, in the metric of the mass and with the rigid rows' own: M w
-  // + G^T mu + D^T nu = p, G w = rate, D w = the rods' warming. False: there is no such rod.
-  struct Rigid {
-    const SparseRows& G;
-    const VectorXd &p, &rate;
-  };
-  bool still(double fast, double t, double h, const VectorXd& q, const Rigid& rigid, VectorXd& w,
-             VectorXd& mu);
+  // velocities the Gauss points alone do not hold: what is left of D w at a step's end would grow from step
+  // to step. Here it is taken out of w and mu, which solve M w + G^T mu = p, G w = rate, in the metric of the
+  // mass, M w + G^T mu + D^T nu = p, D w = the rods' warming: in modes of h omega far above `stiff`. Slower
+  // ones stay, as the bending of a truss, and the motion of a mechanism with more rods than it needs: these
+  // contradict each other by what they are stretched, and held to the last digit would hold that, too.
+  void still(double fast, double stiff, double t, double h, const VectorXd& q, const SparseRows& G,
+             VectorXd& w, VectorXd& mu);
   // The axial forces of these rods that go with that pose and velocity: with two or three stages their
-  // polynomial does not tell them, the motion does, for which they are rigid,
+  // polynomial does not tell them, the motion does, for which they are rigid in their stiff modes,
   //
   //     M a + G^T lambda + D^T N = F,   G a = -bias,   D a = l'' - |u_across|^2 / |d|
   //
   // but for C N''. What rigid rods leave open stays as their lengths at the Gauss points have it: `force`,
   // which has all rods', changes by forces of least complementary energy. Only after still() or
-  // take_as_rigid().
+  // take_as_stiff().
   void find_still_forces(double t, const VectorXd& q, const VectorXd& v, VectorXd& force);
   double compliance(Index i) const { return compliance_[i]; }
-  // The rods that the last call of still() has held, or those taken as rigid since.
+  // The rods that the last call of still() has held, or those taken as stiff since.
   const std::vector<Index>& held() const { return held_; }
 
   MatrixXd tension, residual;  // N [N], R [m]: rods x points
@@ -69,16 +67,20 @@ class ElasticStages {
   const System& system_;
   const GalerkinCoefficients& c_;
   const ElasticRods* rods_;
-  // G with D of the held rods below, and its factors.
-  void stack(const SparseRows& G, const SparseRows& D);
+  // What answers rates r of the held rods by a motion of their stiff modes: M x + G^T mu + D^T nu = 0,
+  // G x = 0, D x = P r.
+  struct Answer {
+    VectorXd x, mu, nu;
+  };
+  Answer answer(VectorXd r) const;
+  VectorXd rates_of(const VectorXd& w) const;  // D w of the held rods
 
   VectorXd compliance_, stretch_;
   double level_ = 0;
-  std::vector<Index> held_, stacked_;  // stacked_: those that saddle_ was analysed for
-  SparseRows rows_;
-  std::unique_ptr<SaddleSolver> saddle_;
-  std::optional<bool> shared_;  // whether these rows leave forces open
-  std::unique_ptr<LeastEnergy> least_;
+  std::vector<Index> held_;
+  SparseRows G_, D_;                              // of the last call
+  std::unique_ptr<SaddleSolver> saddle_, rigid_;  // of G with D of the held rods; of G
+  SparseRows rows_;                               // that saddle_ was analysed for
 };
 
 }  // namespace unfurl

@@ -227,7 +227,7 @@ bool StageEquations::told_by_motion(double at, const SparseRows& directions, dou
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   system.jacobian(q_tau_, G, scratch);
-  if (!rods.take_as_rigid(std::move(fast), G, directions)) return false;
+  if (!rods.take_as_stiff(std::move(fast), h, 0.1 * resolved, G, directions)) return false;
   rods.find_still_forces(at, q_tau_, v_tau_, tension);
   return true;
 }

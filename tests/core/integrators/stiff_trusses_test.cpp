@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Elastic rods whose waves turn many times in a step: what they carry moves as it should.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "core/math/factors.hpp"
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+
+namespace stiff_trusses_test {
+
+// Three parallel cranks of 0.5 m carry a truss of five rods and 1 kg: one rod more than it needs.
+const char* const cranks = R"(
+[structure]
+kind = "custom"
+rod_model = "elastic"
+youngs_modulus = 7e10
+nodes = [{name = "A1", position = [0, 0, 0], fixed = true}, {name = "A2", position = [1, 0, 0], fixed = true},
+         {name = "A3", position = [2, 0, 0], fixed = true},
+         {name = "B1", position = [0.4330127018922193, 0, -0.25]},
+         {name = "B2", position = [1.4330127018922193, 0, -0.25]},
+         {name = "B3", position = [2.4330127018922193, 0, -0.25]},
+         {name = "T", position = [1.4330127018922193, 0, -0.65], mass = 1}]
+rods = [{nodes = ["A1", "B1"], density = 2700, area = 1e-4}, {nodes = ["A2", "B2"], density = 2700, area = 1e-4},
+        {nodes = ["A3", "B3"], density = 2700, area = 1e-4}, {nodes = ["B1", "B2"], density = 2700, area = 1e-4},
+        {nodes = ["B2", "B3"], density = 2700, area = 1e-4}, {nodes = ["B1", "T"], density = 2700, area = 1e-4},
+        {nodes = ["B2", "T"], density = 2700, area = 1e-4}, {nodes = ["B3", "T"], density = 2700, area = 1e-4}]
+[[constraints]]
+kind = "plane"
+nodes = ["*"]
+normal = [0, 1, 0]
+[gravity]
+acceleration = [0, 0, -9.81]
+[solver]
+end_time = 1
+)";
+
+// The angle below the horizontal that cranks of mass c each reach from `angle` in a second, which carry m:
+// (c + m) l angle'' = g (3 c / 2 + m) cos angle. By the rule of Stoermer and Verlet and Richardson.
+double crank_angle(double angle, double c, double m, double l) {
+  const double pull = 9.81 * (1.5 * c + m) / ((c + m) * l);
+  const auto after = [&](int steps) {
+    const double h = 1.0 / steps;
+    double a = angle, rate = 0.5 * h * pull * std::cos(a);
+    for (int i = 0; i < steps; ++i) a += h * rate, rate += h * pull * std::cos(a);
+    return a;
+  };
+  return after(20000) + (after(20000) - after(10000)) / 3;
+}
+
+TEST_CASE("redundant elastic rods do not brake a mechanism, however long its steps") {
+  const double of_crank = 2700 * 1e-4 * 0.5,
+               carried = 1 + 2700 * 1e-4 * (2 * 1 + 0.4 + 2 * std::sqrt(1 + 0.4 * 0.4));
+  const double angle = crank_angle(pi / 6, of_crank, carried, 0.5);
+  const double x = 1 + 0.5 * std::cos(angle), z = -0.5 * std::sin(angle) - 0.4;
+  for (const char* modulus : {"7e10", "2.1e11", "7e13"})
+    for (const char* step : {"0.005", "0.01", "0.02", "0.04"})
+      for (const char* stages : {"3", "4", "5"}) {
+        CAPTURE(modulus, step, stages);
+        const Simulation run = testing::run_scene(
+            cranks, {std::string("structure.youngs_modulus=") + modulus, std::string("solver.step=") + step,
+                     std::string("solver.stages=") + stages});
+        REQUIRE(run.status == RunStatus::completed);
+        const VectorXd q = testing::end_positions(run);
+        // 40 N stretch a crank by 3e-6 m, which moves T by as much, and by some times that while it swings;
+        // three stages are of order 2 in this limit.
+        const double h = std::stod(step) / 0.01, margin = stages[0] == '3' ? 2e-5 + 4e-5 * h * h : 2e-5;
+        CHECK(q[18] == Approx(x).epsilon(0).margin(margin));
+        CHECK(q[20] == Approx(z).epsilon(0).margin(margin));
+      }
+}
+
+TEST_CASE("the bending of a truss is followed by steps that stop the waves of its rods") {
+  // A cantilever of ten bays, at rest and straight, let go under its own weight: it bends around its static
+  // deflection, modes of K and M in the plane, of which the first (20 rad/s) has nearly all.
+  const char* const truss = R"(
+[structure]
+kind = "custom"
+rod_model = "elastic"
+youngs_modulus = 7e10
+nodes = [{name = "A0", position = [0, 0, 0], fixed = true}, {name = "B0", position = [0, 0, 0.3], fixed = true},
+         {repeat = {i = "1:11"}, name = "A{i}", position = ["=i", 0, 0]},
+         {repeat = {i = "1:11"}, name = "B{i}", position = ["=i", 0, 0.3]}]
+rods = [{repeat = {i = "0:10"}, nodes = ["A{i}", "A{i+1}"], density = 2700, area = 1e-4},
+        {repeat = {i = "0:10"}, nodes = ["B{i}", "B{i+1}"], density = 2700, area = 1e-4},
+        {repeat = {i = "1:11"}, nodes = ["A{i}", "B{i}"], density = 2700, area = 1e-4},
+        {repeat = {i = "0:10"}, nodes = ["A{i}", "B{i+1}"], density = 2700, area = 1e-4}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["*"]
+normal = [0, 1, 0]
+[gravity]
+acceleration = [0, 0, -0.1]
+[solver]
+stages = 4
+end_time = 2
+)";
+  const std::shared_ptr<const Model> model = testing::model_of(truss);
+  const System& system = model->system;
+  VectorXd q(system.coordinates()), stiffness(std::ssize(model->structure.rods)), f(system.mass().rows());
+  for (std::size_t i = 0; i < model->structure.nodes.size(); ++i)
+    q.segment<3>(3 * static_cast<Index>(i)) = model->structure.nodes[i].position;
+  for (Index i = 0; i < stiffness.size(); ++i)
+    stiffness[i] = 7e6 / model->structure.rods[static_cast<std::size_t>(i)].length;
+  const MatrixXd D(system.giving_rod_directions(q)), M(system.mass());
+  const VectorXd weight = system.node_mass() * model->structure.gravity.replicate(q.size() / 3, 1);
+  system.reduce_force(weight, f);
+  // With M = L L^T, y = L^T x: y'' = L^-1 f - L^-1 K L^-T y.
+  const MatrixXd inverse = Cholesky(M).solve_lower(MatrixXd::Identity(M.rows(), M.cols())),
+                 K = D.transpose() * stiffness.asDiagonal() * D;
+  const SymmetricEigen modes = symmetric_eigen(inverse * K * inverse.transpose());
+  const VectorXd pull = modes.vectors.transpose() * inverse * f;
+  const auto tip = [&](double t) {
+    const VectorXd way = (1 - (modes.values.cwiseSqrt() * t).array().cos()) / modes.values.array();
+    VectorXd moved(q.size());
+    system.expand_rate(inverse.transpose() * modes.vectors * way.cwiseProduct(pull), moved);
+    return moved[3 * 11 + 2];
+  };
+  struct Steps {
+    const char* step;
+    double left;  // of 7.6e-4 m [m]: its square over the height, and what a step of 0.8 / w leaves
+  };
+  for (const auto& [step, left] : {Steps{"0.04", 2e-5}, Steps{"0.02", 5e-6}, Steps{"0.01", 3e-6}}) {
+    const Simulation run = testing::run_scene(truss, {std::string("solver.step=") + step});
+    const Trajectory& states = run.trajectory;
+    double most = 0, off = 0;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const double z = states.node_positions(i)[3 * 11 + 2];
+      most = std::max(most, std::abs(z));
+      off = std::max(off, std::abs(z - tip(states.time(i))));
+    }
+    CAPTURE(step, off);
+    CHECK(most > 7e-4);
+    CHECK(off < left);
+  }
+}
+
+}  // namespace stiff_trusses_test
