@@ -71,6 +71,13 @@ class Locator {
     return extrapolate();
   }
 
+  // The nearest state that steps set out from farther off than samples lie.
+  State far_off() {
+    resolved_ = trajectory_.size() - 1;
+    if (sine(trajectory_.state(first_)) < farther * farthest_sample) go_back(farther * farthest_sample);
+    return last_before(farthest_sample);
+  }
+
   // At a time before the pose, next to it.
   std::optional<State> locate_before(double t) {
     if (!find_samples()) return std::nullopt;
@@ -396,6 +403,10 @@ class Locator {
 std::optional<State> locate_deployed(const Trajectory& trajectory, const Model& model, Integrator& integrator,
                                      double h, std::size_t first, bool touched) {
   return Locator(trajectory, model, integrator, h, first, touched).locate();
+}
+State far_off_deployed(const Trajectory& trajectory, const Model& model, Integrator& integrator, double h,
+                       std::size_t first) {
+  return Locator(trajectory, model, integrator, h, first).far_off();
 }
 std::optional<State> locate_before_deployed(const Trajectory& trajectory, const Model& model,
                                             Integrator& integrator, double h, std::size_t first, double t) {

@@ -23,6 +23,10 @@ inline constexpr double farthest_sample = 3e-2;  // from the pose, as the sine o
 // there, as it rises again behind the pose, falls like the sine or like its square.
 std::optional<State> locate_deployed(const Trajectory& trajectory, const Model& model, Integrator& integrator,
                                      double h, std::size_t first, bool touched = false);
+// A state before that pose of the same motion, off enough for steps that end there to be solved, be it from
+// before `first`.
+State far_off_deployed(const Trajectory& trajectory, const Model& model, Integrator& integrator, double h,
+                       std::size_t first);
 // A state next to that pose, at a time before it, by the same states.
 std::optional<State> locate_before_deployed(const Trajectory& trajectory, const Model& model,
                                             Integrator& integrator, double h, std::size_t first, double t);

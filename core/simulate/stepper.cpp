@@ -185,7 +185,7 @@ void Stepper::Loop::settle_in_pose(Probe& to, double h) {
 namespace {
 
 // States of a step where none that ends there can be solved, next to a singular pose: on the polynomial
-// through those of the step's other lengths that can, on both sides of the pose.
+// through those of the step's other lengths that can, or of steps from before it, on both sides of the pose.
 class AcrossPose {
  public:
   using Step = std::function<bool(State& state, double length)>;
@@ -250,11 +250,16 @@ std::optional<Crossing> Stepper::Loop::find_crossing(Probe& to, double h) {
       probe.report = step_in_parts(*probing_, probe.state, length, step);
       if (!probe.report.ok()) unsolved = std::min(unsolved, length);
     } else if (!probe.report.ok()) {
-      double longest = 1.5 * std::max(h, to.at);  // beyond the run's end, not beyond an edge of time
-      if (const double edge = grid_.next_edge(now().t); edge < grid_.end())
-        longest = std::min(longest, edge - now().t);
-      if (!across)
-        across.emplace(now(), longest, [&](State& state, double part) { return step(state, part).ok(); });
+      if (!across) {
+        const double longest = 1.5 * std::max(h, to.at);  // beyond the run's end, and an edge of time
+        const std::shared_ptr<const Model> smooth = smooth_model(smooth_since());
+        const auto integrator = fresh_integrator(*find_method(run_.options.method), smooth->system);
+        const State from = far_off(*smooth, *integrator, h);
+        across.emplace(from, now().t - from.t + longest, [&](State& state, double part) {
+          integrator->restart();
+          return integrator->step(state, part).ok();
+        });
+      }
       if (across->at(system(), now().t + length, probe.state))
         probe.report = {};
       else

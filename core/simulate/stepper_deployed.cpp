@@ -76,7 +76,7 @@ bool Stepper::Loop::edge_comes_first(Probe& to, double h, std::optional<State>& 
   const auto edge = edge_after(edges, now().t);
   const double t = edge->jump ? before_jump(edge->t) : edge->t;
   const std::size_t first = smooth_since();
-  const std::shared_ptr<const Model> smooth = smooth_model(first);
+  const std::shared_ptr<const Model> smooth = model_beside_pose(first);
   std::optional<State> there =
       locate_before_deployed(run_.trajectory, *smooth, *careful(*smooth), h, first, t);
   if (!there || !(fold(*there) > apart)) return false;
@@ -99,6 +99,22 @@ Probe Stepper::Loop::beyond(const Probe& to, const State& event) {
   return {.at = way, .state = event};
 }
 
+// The present state, or one of the same motion that lies far off the pose ahead.
+State Stepper::Loop::far_off(const Model& smooth, Integrator& integrator, double h) {
+  if (!(fold(now()) > 0) || !(remaining_rate(model(), now()) < 0)) return now();
+  return far_off_deployed(run_.trajectory, smooth, integrator, h, smooth_since());
+}
+
+// The end of a step over the pose that cannot be solved from the present state.
+void Stepper::Loop::step_from_far_off(Probe& to, double h) {
+  const std::shared_ptr<const Model> smooth = smooth_model(smooth_since());
+  const auto integrator = fresh_integrator(*find_method(run_.options.method), smooth->system);
+  Probe end{.at = h, .state = far_off(*smooth, *integrator, h)};
+  end.report = step_in_parts(*integrator, end.state, now().t + h - end.state.t,
+                             [&](State& state, double length) { return integrator->step(state, length); });
+  if (end.report.ok() && !end.report.weak_end) to = std::move(end);
+}
+
 // A step may get through to a singular pose, with coordinates to half of their digits and rates to none.
 bool Stepper::Loop::singular_at(const State& state) {
   run_.trajectory.append(state, {});
@@ -107,28 +123,36 @@ bool Stepper::Loop::singular_at(const State& state) {
   return singular;
 }
 
-std::unique_ptr<Integrator> Stepper::Loop::careful(const Model& model) const {
-  const bool low_order = run_.options.method == "generalized_alpha";  // on a motion of its own
-  const Method& method = low_order ? *find_method(run_.options.method) : careful_dvm();
-  auto integrator = method.make(model.system, run_.options);
+std::unique_ptr<Integrator> Stepper::Loop::fresh_integrator(const Method& method,
+                                                            const System& system) const {
+  auto integrator = method.make(system, run_.options);
   if (contradictions_) integrator->expect_contradictions();
   return integrator;
 }
+std::unique_ptr<Integrator> Stepper::Loop::careful(const Model& model) const {
+  const bool low_order = run_.options.method == "generalized_alpha";  // on a motion of its own
+  const Method& method = low_order ? *find_method(run_.options.method) : careful_dvm();
+  return fresh_integrator(method, model.system);
+}
 
-// By what is prescribed from a state on, where that is near the pose: what began or ended there is nothing
-// then.
-std::shared_ptr<const Model> Stepper::Loop::smooth_model(std::size_t first) {
-  const bool nearby = first > 0 && fold(run_.trajectory.state(first)) < 1.1 * farthest_sample;
-  if (!nearby || time_edges(model().structure, run_.options.step).empty()) return present_;
+// By what is prescribed from a state on: what begins or ends there, or later, is nothing then.
+std::shared_ptr<const Model> Stepper::Loop::smooth_model(std::size_t first) const {
+  if (time_edges(model().structure, run_.options.step).empty()) return present_;
   Structure structure = pieces_at(model().structure, run_.trajectory.time(first));
   System system(structure, run_.options.eliminate_linear);
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
 }
 
+// The model for states next to the pose, which no others tell of where the motion is smooth from there on.
+std::shared_ptr<const Model> Stepper::Loop::model_beside_pose(std::size_t first) {
+  const bool nearby = first > 0 && fold(run_.trajectory.state(first)) < 1.1 * farthest_sample;
+  return nearby ? smooth_model(first) : present_;
+}
+
 // By shortened steps.
 std::optional<State> Stepper::Loop::locate_near(double h, bool touched) {
   const std::size_t first = smooth_since();
-  const std::shared_ptr<const Model> smooth = smooth_model(first);
+  const std::shared_ptr<const Model> smooth = model_beside_pose(first);
   return locate_deployed(run_.trajectory, *smooth, *careful(*smooth), h, first, touched);
 }
 
@@ -352,6 +376,7 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
   }
   if (run_.options.at_deployed == "pass") {
     if (!to.report.ok() || (!regular_ && std::abs(fold(to.state)) < margin_)) step_over(to, h);
+    if (!to.report.ok()) step_from_far_off(to, h);
     if (watched() && to.report.ok())
       if (auto crossing = find_crossing(to, h); crossing && side(*crossing, event, h) > 0) {
         run_.events.back().t = std::min(event.t, now().t + crossing->probe.at);

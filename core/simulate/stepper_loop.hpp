@@ -116,10 +116,9 @@ class Stepper::Loop {
   const System& system() const { return model().system; }
   const State& now() const { return run_.trajectory.state(run_.trajectory.size() - 1); }
   std::unique_ptr<Integrator> fresh_integrator() const {
-    auto integrator = find_method(run_.options.method)->make(system(), run_.options);
-    if (contradictions_) integrator->expect_contradictions();
-    return integrator;
+    return fresh_integrator(*find_method(run_.options.method), system());
   }
+  std::unique_ptr<Integrator> fresh_integrator(const Method& method, const System& system) const;
 
   void begin_anew_behind_part();
 
@@ -434,9 +433,12 @@ class Stepper::Loop {
   bool edge_comes_first(Probe& to, double h, std::optional<State>& event);
   bool singular_at(const State& state);
   std::unique_ptr<Integrator> careful(const Model& model) const;
-  std::shared_ptr<const Model> smooth_model(std::size_t first);
+  std::shared_ptr<const Model> smooth_model(std::size_t first) const;
+  std::shared_ptr<const Model> model_beside_pose(std::size_t first);
   std::optional<State> locate_near(double h, bool touched = false);
   std::optional<State> locate_touched(const Dip& dip, double h);
+  State far_off(const Model& smooth, Integrator& integrator, double h);
+  void step_from_far_off(Probe& to, double h);
   Probe beyond(const Probe& to, const State& event);
   void come_nearer(const State& state);
   std::optional<State> locate(double h, double latest);
