@@ -33,8 +33,9 @@ constexpr double short_enough = 2.3e-3;
 constexpr double from_start = 0.25;
 // Where the run last switched, or time had an edge, nearer by, the motion is followed back from there, to a
 // little farther out than the samples. What makes it begin there may change its rates sooner than it does on
-// the way of a run: 140 rad/s^2 at 4.5 rad/s leave 2e-11 s at twice as uneven a rate.
-constexpr double from_switch = 0.95, farther = 1.05, even_behind_switch = 0.05;
+// the way of a run: 140 rad/s^2 at 4.5 rad/s leave 2e-11 s at twice as uneven a rate, and a stay of 200
+// rad/s, which goes back past its largest rate, 5e-9 s where rates of samples are as rough as usual.
+constexpr double from_switch = 0.95, farther = 1.05, even_behind_switch = 0.05, smooth_behind_switch = 1e-8;
 constexpr int most_stations = 200;
 constexpr double near_dead_centre = 0.95;  // sine of the fold angle
 // Shares of a constraint's length: errors of the extrapolated pose above the first are taken away, by motions
@@ -114,7 +115,7 @@ class Locator {
         best_ = samples_;
         least = rough;
       }
-      if (!(least > smooth_enough) || far < 4 * smallest_farthest) break;
+      if (!(least > (back ? smooth_behind_switch : smooth_enough)) || far < 4 * smallest_farthest) break;
     }
     samples_ = std::move(best_);
     return samples_.size() >= 3;
