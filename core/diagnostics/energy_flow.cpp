@@ -52,8 +52,7 @@ EnergyMeter::EnergyMeter(const Model& model)
 SolvedPoint EnergyMeter::at_state(const State& state) {
   SolvedPoint p{VectorXd(state.z.size()), VectorXd(lambda_.size()), true};
   system_.follow(state);
-  p.known = index1_->evaluate(state, p.acceleration, p.lambda);
-  if (!p.known) p.acceleration.setZero();
+  if (p.known = index1_->evaluate(state, p.acceleration, p.lambda); !p.known) p.acceleration.setZero();
   return p;
 }
 
@@ -302,11 +301,11 @@ void EnergyMeter::smooth_ends(const State& a, const State& b) {
   by_b_ = by_rates_b + both;
 }
 
-void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b) {
+void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b, bool singular_at_b) {
   if (idle()) return;
   before_ = fresh_ && last_ == a.t ? std::move(after_) : at_state(a);
   after_ = at_b.known ? std::move(at_b) : at_state(b);
-  fresh_ = true, last_ = b.t;
+  fresh_ = true, last_ = b.t, after_.known = after_.known && !singular_at_b;
   const double h = b.t - a.t;
   const Index told = b.stage_tension.cols();
   if (told > 0 && told != own_.nodes.size()) own_ = gauss_legendre(static_cast<int>(told));
@@ -491,7 +490,8 @@ void RunEnergyFlow::step_to(std::size_t i, StateForces* forces) {
   meter_of(model);
   const double load_work = meter_->load_work, dissipated = meter_->dissipated,
                drive_work = meter_->drive_work;
-  meter_->add(a, b, forces && !meter_->idle() ? forces->at(i) : SolvedPoint{});
+  meter_->add(a, b, forces && !meter_->idle() ? forces->at(i) : SolvedPoint{},
+              trajectory_.report(i).singular_event);
   flow_.load_work.back() += meter_->load_work - load_work;
   flow_.dissipated.back() += meter_->dissipated - dissipated;
   flow_.drive_work.back() += meter_->drive_work - drive_work;
