@@ -127,7 +127,7 @@ GoodPart good_part(const Simulation& run, const Diagnostics& d) {
     if (off <= trusted_share * energy) return true;
     if (round_off_error.empty())
       round_off_error = energy_round_off(run), stopped = energy_of_stopped_waves(run);
-    return off <= trusted_share * energy + round_off_error[i] + stopped[i];
+    return off <= trusted_share * energy + round_off_error[i] + std::min(stopped[i], energy);
   };
   EnergyTurnedOver turned;
   GoodPart part;
@@ -438,7 +438,7 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
   text.precision(3);
   const bool within = off <= energy_share * turned;
   const double round_off = within ? 0.0 : energy_round_off(run).back(),
-               stopped = within ? 0.0 : energy_of_stopped_waves(run).back();
+               stopped = within ? 0.0 : std::min(energy_of_stopped_waves(run).back(), turned);
   if (!(off <= energy_share * turned + round_off + stopped)) {
     BalanceError rise(damps(run));
     for (const double balance : d.at("energy_balance_J").values) rise.add(balance);
