@@ -67,8 +67,11 @@ void fill_range(const std::string& text, const std::vector<std::string>& parts, 
     const double size = axis.log ? std::abs(x) : std::max(std::abs(from), std::abs(to));
     if (i > 0 && std::abs(x - std::round(x)) <= 4 * std::numeric_limits<double>::epsilon() * size)
       x = std::round(x);
-    // Powers are a digit off: 0.01 and not 0.009999999999999998.
+    // Powers are some digits off, and tenths one: 0.01 and not 0.009999999999999998, 0.3 and not
+    // 0.30000000000000004.
     if (axis.log && i > 0) x = to_digits(x, 15);
+    const double plain = to_digits(x, 12);
+    if (i > 0 && std::abs(x - plain) <= 32 * std::numeric_limits<double>::epsilon() * std::abs(x)) x = plain;
     if (i + 1 == static_cast<long>(count) && i > 0) x = to;
     axis.numbers.push_back(x);
     axis.values.push_back(exact_number(x));

@@ -34,6 +34,8 @@ TEST_CASE("a range meets the whole numbers between its ends") {
   CHECK(parse_axis("x=1e-3:1e15:19:log").numbers[1] == 0.01);
   CHECK(parse_axis("x=0.001:1000:7:log").numbers == std::vector<double>{0.001, 0.01, 0.1, 1, 10, 100, 1000});
   CHECK(parse_axis("x=0.3:3e-9:9:log").values[4] == "3e-05");
+  CHECK(parse_axis("x=1e-6:1e3:4:log").numbers == std::vector<double>{1e-6, 1e-3, 1, 1000});
+  CHECK(parse_axis("x=0:1.5:6").values == std::vector<std::string>{"0", "0.3", "0.6", "0.9", "1.2", "1.5"});
   CHECK(parse_axis("x=0.12345678901234567:1:3:log").numbers[0] == 0.12345678901234567);  // ends as they are
   CHECK(parse_axis("x=0.001:1e15:3").numbers[0] == 0.001);
 }
