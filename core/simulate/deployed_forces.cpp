@@ -69,7 +69,7 @@ std::size_t settled_fit(const std::vector<VectorXd>& fits, double most) {
 VectorXd pole(const std::vector<NearDeployed>& samples) {
   constexpr double not_small = 1e-2, known = 1e-2, settled = 0.1;
   const std::vector<VectorXd> fits = multiplier_fits(samples, 1);
-  const double beside = samples.back().sine * samples.back().state.lambda.norm();
+  const double beside = std::abs(samples.back().sine) * samples.back().state.lambda.norm();
   const std::size_t best = settled_fit(fits, known * beside);
   if (best == 0 || !(fits[best].norm() > not_small * beside)) return {};
   // Round-off of the samples, which is of that size in rings of hundreds of units, agrees with nothing.

@@ -138,6 +138,22 @@ TEST_CASE("a load with a point each millisecond leads to a flat deployed pose as
   }
 }
 
+// What one leg bears and the other does not goes through the coupler, T sin th = half of its moment: without
+// bound, unless both bear the same. Behind the last bend there may be no room but on the other side.
+TEST_CASE("forces without bound in a flat pose are told however shortly before it a load bends") {
+  for (const double before : {0.1, 5e-3, 1e-3, 2e-4})
+    for (const bool both : {false, true}) {
+      INFO(before << " s, " << (both ? "both legs" : "one leg"));
+      const Simulation run = testing::run_scene(
+          cranks("", "step = 0.01\n[[forces]]\nkind = \"load_over_time\"\nnodes = [\"B" +
+                         std::string(both ? "*" : "0") + "\"]\nforce = [0, 0, 1]\ntimes = [0, " +
+                         number(flat - before) + ", 9]\nvalues = [0, 1e-3, 5]\n"));
+      REQUIRE(run.status == RunStatus::deployed);
+      const Trajectory& path = run.trajectory;
+      CHECK(path.state(path.size() - 1).lambda.hasNaN() == !both);
+    }
+}
+
 // A spring's energy is what the stay takes.
 TEST_CASE("a stay that goes taut shortly before a flat deployed pose holds back") {
   for (const auto& [angle, stiffness] :
