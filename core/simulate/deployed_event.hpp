@@ -31,7 +31,8 @@ State far_off_deployed(const Trajectory& trajectory, const Model& model, Integra
 std::optional<State> locate_before_deployed(const Trajectory& trajectory, const Model& model,
                                             Integrator& integrator, double h, std::size_t first, double t);
 
-// A pose next to the deployed one, with its multipliers, and the sine of its fold angle.
+// A pose next to the deployed one, with its multipliers, and the sine of its fold angle, or what else they
+// are smooth functions of that is zero there.
 struct NearDeployed {
   double sine;
   State state;
@@ -45,7 +46,8 @@ VectorXd shares_at_zero(const std::vector<NearDeployed>& samples, int degree);
 // that a fit of low degree is truer than interpolation where round-off, d / sine^4, is more than what the
 // degree leaves: the degree at which it changes least. Where even that is not known, what is left open is
 // chosen as for any multipliers that are not unique: least norm.
-// NaN where they grow without bound towards the pose.
-VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at);
+// NaN where they grow without bound towards the pose, at most like sine^-poles.
+VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at,
+                                 int poles = 1);
 
 }  // namespace unfurl

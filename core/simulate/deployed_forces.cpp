@@ -64,17 +64,20 @@ std::size_t settled_fit(const std::vector<VectorXd>& fits, double most) {
   return best;
 }
 
-// c where multipliers grow like c / sine towards the pose, as where rods in line bear a load across them;
-// empty where they are bounded: there c is a small share of what sine times lambda is next to the pose.
-VectorXd pole(const std::vector<NearDeployed>& samples) {
-  constexpr double not_small = 1e-2, known = 1e-2, settled = 0.1;
-  const std::vector<VectorXd> fits = multiplier_fits(samples, 1);
-  const double beside = std::abs(samples.back().sine) * samples.back().state.lambda.norm();
+// c where multipliers grow like c / sine^order towards the pose, as where rods in line bear a load across
+// them; empty where they do not: there c is a small share of what sine^order times lambda is next to the
+// pose.
+VectorXd pole(const std::vector<NearDeployed>& samples, int order) {
+  constexpr double not_small = 1e-2, known = 1e-2, settled = 0.1, single = 0.3;
+  const std::vector<VectorXd> fits = multiplier_fits(samples, order);
+  const double beside = std::pow(std::abs(samples.back().sine), order) * samples.back().state.lambda.norm();
   const std::size_t best = settled_fit(fits, known * beside);
   if (best == 0 || !(fits[best].norm() > not_small * beside)) return {};
   // Round-off of the samples, which is of that size in rings of hundreds of units, agrees with nothing.
-  if (!((fits[best] - fits[best - 1]).norm() < settled * fits[best].norm())) return {};
-  return fits[best];
+  const VectorXd change = fits[best] - fits[best - 1];
+  if (!(change.norm() < settled * fits[best].norm())) return {};
+  // Nor is one multiplier's pole what it depends on the degree.
+  return (change.array().abs() < single * fits[best].array().abs()).select(fits[best], 0.0);
 }
 
 // What acts just before the deployed pose, where that is not what acts in it: on hinges without an axis whose
@@ -98,17 +101,21 @@ VectorXd other_force_before(Index1& index1, const std::vector<NearDeployed>& sam
 // themselves say something else than those that the equations have corrected, they are right. Where
 // multipliers grow without bound, the equations of the pose lack what is left of them times a Jacobian that
 // vanishes.
-VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at) {
+VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at,
+                                 int poles) {
   constexpr double something_else = 1e-3, grows = 1e-4, wild = 10;
-  const VectorXd c = pole(samples);
-  if (c.size() > 0)
-    for (NearDeployed& sample : samples) sample.state.lambda -= c / sample.sine;
+  Eigen::ArrayX<bool> bounded = Eigen::ArrayX<bool>::Constant(samples.front().state.lambda.size(), true);
+  for (int order = poles; order > 0; --order) {
+    const VectorXd c = pole(samples, order);
+    if (c.size() == 0) continue;
+    bounded = bounded && c.array().abs() <= grows * c.lpNorm<Eigen::Infinity>();
+    for (NearDeployed& sample : samples) sample.state.lambda -= c / std::pow(sample.sine, order);
+  }
   const std::vector<VectorXd> own = multiplier_fits(samples, 0);
   const std::size_t by_itself = settled_fit(own, most_open * own.back().norm());
-  if (c.size() > 0) {
-    const double least = grows * c.lpNorm<Eigen::Infinity>();
+  if (!bounded.all()) {
     const VectorXd& rest = by_itself > 0 ? own[by_itself] : own.back();
-    return (c.array().abs() > least).select(std::numeric_limits<double>::quiet_NaN(), rest);
+    return bounded.select(rest.array(), std::numeric_limits<double>::quiet_NaN());
   }
   std::vector<VectorXd> fits = own;
   index1.correct(at, fits, other_force_before(index1, samples, at));

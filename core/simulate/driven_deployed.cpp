@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "core/integrators/index1.hpp"
+#include "core/math/coupled_columns.hpp"
 #include "core/math/lagrange.hpp"
 #include "core/math/saddle_solver.hpp"
 #include "core/simulate/deployed_event.hpp"
+#include "core/simulate/free_motion.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/measured_event.hpp"
 #include "core/structure/time_edges.hpp"
@@ -24,62 +26,139 @@ constexpr int around_pose = 8, before_pose = 12;
 constexpr double nothing_left = 1e-9;
 // Interpolated values are taken at once where the last degree changes them by less, of the structure's size.
 constexpr double settled_to = 1e-13;
-constexpr std::size_t most_back = 100;  // states of the run that nodes are solved from
+constexpr std::size_t most_back = 100;                        // states of the run that nodes are solved from
+constexpr double far_from_pose = 1e-2, clear_of_pose = 1e-3;  // of what remains
 
-struct DrivenSample {
-  State state;
-  VectorXd driven;  // of its rates what drives make of rest
-};
-using DrivenSamples = std::vector<DrivenSample>;
+using DrivenStates = std::vector<State>;
+
+// The last state of the run that is not next to the pose, or its model's first.
+std::size_t far_state(const Trajectory& trajectory) {
+  const Model& model = trajectory.last_model();
+  VectorXd q(model.system.coordinates());
+  std::size_t i = trajectory.size() - 1;
+  for (;; --i) {
+    const State& state = trajectory.state(i);
+    model.system.expand(state.z, q);
+    if (i == 0 || &trajectory.model(i - 1) != &model ||
+        std::abs(model.structure.deployment.remaining(q, state.angles)) > far_from_pose)
+      return i;
+  }
+}
 
 class DrivenLocator {
  public:
   DrivenLocator(const Trajectory& trajectory, const std::function<std::unique_ptr<Integrator>()>& fresh,
-                const DrivenDeployed& where)
+                double guess, double h)
       : trajectory_(trajectory),
         model_(trajectory.last_model()),
         integrator_(fresh()),
         system_(model_.system),
         jacobian_(system_.jacobian_pattern()),
         saddle_(system_.mass(), jacobian_),
-        where_(where) {
+        free_(system_, free_coordinates(system_, trajectory.state(far_state(trajectory)))),
+        guess_(guess),
+        h_(h),
+        edge_(next_prescribed_edge(trajectory)) {
     first_ = trajectory.size() - 1;
-    const std::vector<TimeEdge> edges = time_edges(model_.structure, where.h);
+    const std::vector<TimeEdge> edges = prescribed_edges(model_.structure, h);
     const auto smooth = [&](std::size_t i) {
       const double before = trajectory.time(i - 1), after = trajectory.time(i);
       const auto edge = edge_after(edges, before_jump(before));
       return &trajectory.model(i - 1) == &model_ && !same_instant(before, after) &&
-             (edge == edges.end() || edge->t > before + 1e-6 * where_.h);
+             (edge == edges.end() || edge->t > before + 1e-6 * h);
     };
     while (first_ > 0 && trajectory.size() - first_ < most_back && smooth(first_)) --first_;
+    for (const TimeEdge& edge : time_edges(model_.structure, h)) edges_.push_back(edge.t);
+    find_resting();
   }
 
-  std::optional<State> locate() {
+  std::optional<DrivenDeployed> locate() {
     go_ahead();
-    DrivenSamples best;
-    double least = std::numeric_limits<double>::infinity();
-    State out;
-    double apart = where_.h;
+    VectorXd led = VectorXd::Ones(system_.solved_coordinates());
+    led(free_.coordinates()).setZero();
+    Tried best;
     for (const double share : {1.0, 0.5, 0.25, 2.0, 3.0, 4.0, 6.0, 8.0, 0.125}) {
-      DrivenSamples samples;
-      const std::optional<double> t = around(share * where_.h, samples);
+      Tried next{.apart = share * h_};
+      const std::optional<double> t = around(next.apart, next.samples);
       if (!t) continue;
-      State all = at(*t, samples);
-      const State lower = at(*t, {samples.begin() + 1, samples.end()});
-      const double rough = (all.z - lower.z).lpNorm<Eigen::Infinity>() +
-                           where_.h * (all.w - lower.w).lpNorm<Eigen::Infinity>();
-      if (rough < least)
-        least = rough, out = std::move(all), best = std::move(samples), apart = share * where_.h;
-      if (least < settled_to * out.z.lpNorm<Eigen::Infinity>()) break;
+      next.t = *t;
+      next.rough = rough(*t, next.samples, led);
+      if (next.rough < best.rough) best = next;
+      tried_.push_back(std::move(next));
+      if (best.rough < settled_to * best.samples.back().z.lpNorm<Eigen::Infinity>()) break;
     }
-    if (best.empty()) return std::nullopt;
-    out = polished(std::move(out), best);
-    DrivenSamples before;
-    finish(out, sample(out.t, apart, false, before) ? before : best);
+    if (tried_.empty()) return std::nullopt;
+    DrivenDeployed out{polished(at(best.t, best.samples), best.samples), best.rough};
+    out.error = std::max(out.error, move_free(out.state, best.samples));
+    DrivenStates before;
+    finish(out.state, sample(out.state.t, best.apart, false, before) ? before : best.samples);
     return out;
   }
 
  private:
+  struct Tried {
+    double apart = 0, t = 0, rough = std::numeric_limits<double>::infinity();
+    DrivenStates samples{};
+  };
+
+  // Where prescribed motions are at rest at the edge, they are so exactly.
+  void find_resting() {
+    rests_ = VectorXd::Zero(system_.solved_coordinates());
+    if (!std::isfinite(edge_)) return;
+    CoupledColumns columns(jacobian_.cols());
+    columns.join_rows_of(jacobian_);
+    VectorXd rate(system_.constraints()), moves = VectorXd::Zero(rests_.size());
+    system_.target_rate(edge_, rate);
+    for (int r = 0; r < jacobian_.outerSize(); ++r)
+      if (SparseRows::InnerIterator it(jacobian_, r); it && std::abs(rate[r]) * h_ > nothing_left)
+        moves[columns.set_of(it.col())] = 1;
+    for (Index i = 0; i < rests_.size(); ++i) rests_[i] = 1 - moves[columns.set_of(i)];
+    rests_(free_.coordinates()).setZero();
+  }
+
+  // How far some coordinates depend on the highest degree.
+  double rough(double t, const DrivenStates& samples, const VectorXd& of) {
+    const State all = at(t, samples), lower = at(t, {samples.begin() + 1, samples.end()});
+    return (all.z - lower.z).cwiseProduct(of).lpNorm<Eigen::Infinity>() +
+           h_ * (all.w - lower.w).cwiseProduct(of).lpNorm<Eigen::Infinity>();
+  }
+
+  // What is free goes its own way from a state that is clear of the pose; where it is too stiff for that, as
+  // polynomials have it. Returns how far it may be off.
+  double move_free(State& out, const DrivenStates& samples) {
+    const std::vector<Index>& free = free_.coordinates();
+    if (free.empty()) return 0;
+    std::size_t from = 0;
+    for (std::size_t i = 1; i < samples.size() && samples[i].t < out.t; ++i)
+      if (std::abs(left(samples[i])) > clear_of_pose) from = i;
+    State state = samples[from];
+    if (state.tension.size() == 0) {
+      system_.follow(state);
+      const double error =
+          free_.move(state, out.t, edges_, [&](double t, State& led, VectorXd& acceleration) {
+            led = at(t, samples);
+            acceleration = acceleration_at(t, samples);
+          });
+      if (std::isfinite(error)) {
+        out.z(free) = state.z(free);
+        out.w(free) = state.w(free);
+        return error;
+      }
+    }
+    VectorXd of = VectorXd::Zero(out.z.size());
+    of(free).setOnes();
+    double least = std::numeric_limits<double>::infinity();
+    for (const Tried& tried : tried_) {
+      const double error = rough(out.t, tried.samples, of);
+      if (!(error < least)) continue;
+      least = error;
+      const State there = at(out.t, tried.samples);
+      out.z(free) = there.z(free);
+      out.w(free) = there.w(free);
+    }
+    return least;
+  }
+
   double left(const State& state) {
     VectorXd q(model_.system.coordinates());
     model_.system.expand(state.z, q);
@@ -89,12 +168,25 @@ class DrivenLocator {
   // States of the run to come, as far as its steps get towards the pose.
   void go_ahead() {
     State state = trajectory_.state(trajectory_.size() - 1);
-    while (where_.guess - state.t > 1.01 * where_.h) {
-      integrator_->restart();
-      const StepReport report = integrator_->step(state, where_.h);
-      if (!report.ok() || report.weak_end) return;
+    while (guess_ - state.t > 1.01 * h_) {
+      if (!step_to(state, state.t + h_)) return;
       ahead_.push_back(state);
     }
+  }
+  // No step leads over an edge of time.
+  bool step_to(State& state, double t) {
+    while (t > state.t) {
+      const auto edge = std::upper_bound(edges_.begin(), edges_.end(), state.t);
+      const bool ends = edge != edges_.end() && *edge < t;
+      const double end = ends ? *edge : t, length = (ends ? before_jump(end) : end) - state.t;
+      if (length > 0) {
+        integrator_->restart();
+        const StepReport report = integrator_->step(state, length);
+        if (!report.ok() || report.weak_end) return false;
+      }
+      state.t = end;
+    }
+    return true;
   }
   const State& last_before(double t) const {
     for (auto state = ahead_.rbegin(); state != ahead_.rend(); ++state)
@@ -105,8 +197,8 @@ class DrivenLocator {
   }
 
   // The pose's time by such states, once more where they lay around another.
-  std::optional<double> around(double apart, DrivenSamples& samples) {
-    std::optional<double> t = where_.guess;
+  std::optional<double> around(double apart, DrivenStates& samples) {
+    std::optional<double> t = guess_;
     for (int i = 0; i < 3; ++i) {
       const double guess = *t;
       samples.clear();
@@ -121,9 +213,8 @@ class DrivenLocator {
   }
 
   // On the constraints to the last digit, of weak directions too.
-  bool put_on(DrivenSample& sample) {
+  bool put_on(State& state) {
     constexpr double near = 1e-3;
-    State& state = sample.state;
     system_.follow(state);
     VectorXd q(system_.coordinates()), phi(system_.constraints()), x(state.z.size()), y(phi.size());
     const VectorXd none = VectorXd::Zero(x.size());
@@ -140,65 +231,67 @@ class DrivenLocator {
     system_.target_rate(state.t, rate);
     const VectorXd p = system_.mass() * state.w;
     saddle_.solve(p, rate, state.w, y);
-    sample.driven.resize(x.size());
-    saddle_.solve(none, rate, sample.driven, y);
-    return state.w.allFinite() && sample.driven.allFinite();
+    return state.w.allFinite();
   }
 
   // States at times `apart`, on both sides of the pose or before it only.
-  bool sample(double guess, double apart, bool both, DrivenSamples& out) {
+  bool sample(double guess, double apart, bool both, DrivenStates& out) {
     const int count = both ? around_pose : before_pose;
     const double behind = both ? 0.5 * around_pose - 0.5 : -1.0;
-    if (both && guess + behind * apart >= before_jump(where_.edge)) return false;
+    if (both && guess + behind * apart >= before_jump(edge_)) return false;
     if (guess + (behind - count + 1) * apart < trajectory_.time(first_)) return false;
     for (int k = 0; k < count; ++k) {
       const double t = guess + (behind - (count - 1 - k)) * apart;
       const State& last = last_before(t);
-      DrivenSample next{out.empty() || out.back().state.t < last.t ? last : out.back().state, {}};
-      const double length = t - next.state.t;
-      integrator_->restart();
-      if (length > 0) {
-        const StepReport report = integrator_->step(next.state, length);
-        if (!report.ok() || report.weak_end) return false;
-      }
-      next.state.t = t;
-      if (!put_on(next)) return false;
+      State next = out.empty() || out.back().t < last.t ? last : out.back();
+      if (!step_to(next, t) || !put_on(next)) return false;
       out.push_back(std::move(next));
     }
     return true;
   }
 
-  static std::vector<double> weights(double t, const DrivenSamples& samples) {
+  static std::vector<double> weights(double t, const DrivenStates& samples) {
     std::vector<double> out;
     for (std::size_t k = 0; k < samples.size(); ++k)
-      out.push_back(lagrange_weight(k, samples.size(), t, [&](std::size_t i) { return samples[i].state.t; }));
+      out.push_back(lagrange_weight(k, samples.size(), t, [&](std::size_t i) { return samples[i].t; }));
+    return out;
+  }
+  // The slope of the polynomial through their rates.
+  static VectorXd acceleration_at(double t, const DrivenStates& samples) {
+    VectorXd out = VectorXd::Zero(samples.front().w.size());
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      double slope = 0;
+      for (std::size_t m = 0; m < samples.size(); ++m) {
+        if (m == k) continue;
+        double product = 1 / (samples[k].t - samples[m].t);
+        for (std::size_t i = 0; i < samples.size(); ++i)
+          if (i != k && i != m) product *= (t - samples[i].t) / (samples[k].t - samples[i].t);
+        slope += product;
+      }
+      out += slope * samples[k].w;
+    }
     return out;
   }
 
-  bool at_rest(double t) const {
-    if (!std::isfinite(t)) return false;
-    VectorXd rate(model_.system.constraints());
-    model_.system.target_rate(t, rate);
-    return rate.lpNorm<Eigen::Infinity>() * where_.h <= nothing_left;
-  }
-
   // Of the pose: the drives' end, where it is there, or the zero nearest to the guess.
-  std::optional<double> time(const DrivenSamples& samples) {
+  std::optional<double> time(const DrivenStates& samples) {
     std::vector<double> values;
-    for (const DrivenSample& sample : samples) values.push_back(left(sample.state));
+    for (const State& sample : samples) values.push_back(left(sample));
     const auto remains = [&](double t) {
       const std::vector<double> share = weights(t, samples);
       double sum = 0;
       for (std::size_t k = 0; k < values.size(); ++k) sum += share[k] * values[k];
       return sum;
     };
-    if (samples.back().state.t < where_.edge && at_rest(where_.edge)) {
-      State there = at(where_.edge, samples);
-      system_.follow(samples.back().state);
-      project(system_, there);
-      if (std::abs(left(there)) < nothing_left) return where_.edge;
+    if (samples.back().t < edge_ && std::isfinite(edge_)) {
+      State there = at(edge_, samples);
+      if (std::abs(remaining_rate(model_, there)) * h_ < nothing_left) {
+        system_.follow(samples.back());
+        project(system_, there);
+        if (std::abs(left(there)) < nothing_left) return edge_;
+      }
     }
-    double low = trajectory_.end_time(), high = std::min(where_.edge, where_.guess + where_.h);
+    double low = trajectory_.end_time(), high = std::min(edge_, guess_ + h_);
     if (!(remains(low) > 0) || !(remains(high) <= 0)) return std::nullopt;
     for (int i = 0; i < 100 && low < high; ++i) {
       const double middle = low + 0.5 * (high - low);
@@ -208,57 +301,58 @@ class DrivenLocator {
     return high;
   }
 
-  // Where the drives are at rest, of the rates those that they leave.
-  State at(double t, const DrivenSamples& samples) const {
+  State at(double t, const DrivenStates& samples) const {
     const std::vector<double> share = weights(t, samples);
-    const bool rests = t == where_.edge;
-    State out = samples.back().state;
+    State out = samples.back();
     out.t = t;
     out.z.setZero(), out.w.setZero();
     out.stage_tension.resize(0, 0), out.tension_error.resize(0);
-    const bool pull = std::ranges::all_of(
-        samples, [&](const DrivenSample& s) { return s.state.tension.size() == out.tension.size(); });
+    const bool pull =
+        std::ranges::all_of(samples, [&](const State& s) { return s.tension.size() == out.tension.size(); });
     out.tension.setZero(pull ? out.tension.size() : 0);
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      out.z += share[k] * samples[k].state.z;
-      out.w += share[k] * samples[k].state.w;
-      if (rests) out.w -= share[k] * samples[k].driven;
-      if (out.tension.size() > 0) out.tension += share[k] * samples[k].state.tension;
+      out.z += share[k] * samples[k].z;
+      out.w += share[k] * samples[k].w;
+      if (out.tension.size() > 0) out.tension += share[k] * samples[k].tension;
     }
+    if (t == edge_) out.w -= out.w.cwiseProduct(rests_);
     return out;
   }
 
   // At the time at which the constraints themselves, and the drives among them, leave nothing.
-  State polished(State out, const DrivenSamples& samples) {
-    if (out.t == where_.edge) return out;
+  State polished(State out, const DrivenStates& samples) {
+    if (out.t == edge_) return out;
     for (int i = 0; i < 3; ++i) {
       State on = out;
-      system_.follow(samples.back().state);
+      system_.follow(samples.back());
       project(system_, on);
       const double later = -left(on) / remaining_rate(model_, on);
-      if (!(std::abs(later) < where_.h)) break;
-      out = at(std::min(out.t + later, before_jump(where_.edge)), samples);
+      if (!(std::abs(later) < h_)) break;
+      out = at(std::min(out.t + later, before_jump(edge_)), samples);
     }
     return out;
   }
 
-  // On the constraints at its time, with multipliers from the poses before it.
-  void finish(State& out, const DrivenSamples& samples) {
-    system_.follow(samples.back().state);
+  // On the constraints at its time, with multipliers from the poses before it: functions of time where the
+  // pose is at rest, as accelerations are, which go with its cube root then.
+  void finish(State& out, const DrivenStates& samples) {
+    system_.follow(samples.back());
     system_.count_on(out);
     project(system_, out);
     Index1 index1(system_, true);
     std::vector<NearDeployed> before;
     VectorXd acceleration(out.w.size());
-    for (const DrivenSample& sample : samples) {
-      if (sample.state.t >= out.t) break;
-      State state = sample.state;
+    const bool rests = out.t == edge_;
+    for (const State& sample : samples) {
+      if (sample.t >= out.t) break;
+      State state = sample;
       system_.follow(state);
       if (index1.evaluate(state, acceleration, state.lambda))
-        before.push_back({left(state), std::move(state)});
+        before.push_back({rests ? out.t - state.t : left(state), std::move(state)});
     }
     system_.follow(out);
-    if (before.size() >= 3) out.lambda = multipliers_at_deployed(index1, std::move(before), out);
+    if (before.size() >= 3)
+      out.lambda = multipliers_at_deployed(index1, std::move(before), out, rests ? 3 : 1);
   }
 
   const Trajectory& trajectory_;
@@ -268,27 +362,33 @@ class DrivenLocator {
   SparseRows jacobian_;
   SaddleSolver saddle_;
   std::vector<double> scratch_;
-  DrivenDeployed where_;
+  FreeMotion free_;
+  double guess_, h_;
+  double edge_;                // the next time at which something that is prescribed begins or ends
+  std::vector<double> edges_;  // those of all that acts
+  VectorXd rests_;             // 1 of coordinates that drives move, and that are at rest at the edge
+  std::vector<Tried> tried_;
   std::vector<State> ahead_;
   std::size_t first_;  // state of the run to go back to
 };
 
 }  // namespace
 
+double next_prescribed_edge(const Trajectory& trajectory) {
+  const std::vector<TimeEdge> edges =
+      prescribed_edges(trajectory.last_model().structure, trajectory.options().step);
+  const auto edge = edge_after(edges, trajectory.end_time());
+  return edge == edges.end() ? std::numeric_limits<double>::infinity() : edge->t;
+}
+
 bool drives_lead_to_deployed(const Trajectory& trajectory) {
-  constexpr double far = 1e-2, none = 1e-6;  // from the pose; of a rate
+  constexpr double none = 1e-6;  // of a rate
   const Model& model = trajectory.last_model();
   const Deployment& deployment = model.structure.deployment;
   if (model.system.drives().empty() || deployment.empty()) return false;
   VectorXd q(model.system.coordinates()), free(q.size());
-  std::size_t i = trajectory.size() - 1;
-  for (;; --i) {
-    model.system.expand(trajectory.state(i).z, q);
-    if (i == 0 || &trajectory.model(i - 1) != &model ||
-        std::abs(deployment.remaining(q, trajectory.state(i).angles)) > far)
-      break;
-  }
-  const State& state = trajectory.state(i);
+  const State& state = trajectory.state(far_state(trajectory));
+  model.system.expand(state.z, q);
   for (Index k = 0; k < free.size(); ++k) free[k] = std::sin(1.0 + static_cast<double>(k));  // any motion
   const System near = model.system.at(state);
   const auto rate = [&](const VectorXd& v) {
@@ -302,10 +402,10 @@ bool drives_lead_to_deployed(const Trajectory& trajectory) {
   return std::abs(fitted(free) - fitted(VectorXd::Zero(q.size()))) <= none * std::abs(rate(free));
 }
 
-std::optional<State> locate_driven(const Trajectory& trajectory,
-                                   const std::function<std::unique_ptr<Integrator>()>& fresh,
-                                   const DrivenDeployed& where) {
-  return DrivenLocator(trajectory, fresh, where).locate();
+std::optional<DrivenDeployed> locate_driven(const Trajectory& trajectory,
+                                            const std::function<std::unique_ptr<Integrator>()>& fresh,
+                                            double guess, double h) {
+  return DrivenLocator(trajectory, fresh, guess, h).locate();
 }
 
 }  // namespace unfurl

@@ -14,17 +14,22 @@ namespace unfurl {
 // changes?
 bool drives_lead_to_deployed(const Trajectory& trajectory);
 
+// The next time at which something that constraints prescribe begins or ends.
+double next_prescribed_edge(const Trajectory& trajectory);
+
 // The deployed pose to which drives lead, where constraints lose rank, at about the time `guess`, by steps of
-// about the length h. Its time is the drives', and coordinates and rates there are smooth functions of time
-// where they are none of what remains: which goes like the cube of the time left where a drive slows down to
-// rest, and has no last part that a step could be solved to. So they are interpolated in time, from states
-// before it and, before the next time `edge` at which a drive or load begins or ends, behind it; at the edge
-// itself where the drives are at rest there. `fresh` makes the integrator. Nothing where it is not there.
+// about the length h. Its time is the drives', and coordinates and rates that drives alone move are smooth
+// functions of time there, of none of what remains: which goes like the cube of the time left where a drive
+// slows down to rest, and has no last part that a step could be solved to. So they are interpolated in time,
+// from states before it and, before the next prescribed edge, behind it; at the edge itself where the drives
+// are at rest there. What else moves goes its own way beside them. `fresh` makes the integrator. Nothing
+// where it is not there.
 struct DrivenDeployed {
-  double guess, h, edge;
+  State state;
+  double error = 0;  // how far it may be off, in a coordinate or, in a step, by a rate [m]
 };
-std::optional<State> locate_driven(const Trajectory& trajectory,
-                                   const std::function<std::unique_ptr<Integrator>()>& fresh,
-                                   const DrivenDeployed& where);
+std::optional<DrivenDeployed> locate_driven(const Trajectory& trajectory,
+                                            const std::function<std::unique_ptr<Integrator>()>& fresh,
+                                            double guess, double h);
 
 }  // namespace unfurl

@@ -173,16 +173,15 @@ bool Stepper::Loop::leads() {
   return leads_;
 }
 
-std::optional<State> Stepper::Loop::locate_led(double guess, double h, double edge) {
+std::optional<State> Stepper::Loop::locate_led(double guess, double h) {
   const std::size_t last = run_.trajectory.size() - 1;
   for (std::size_t i = last; i > 0 && i + 4 > last; --i)  // this step may be cut short
     h = std::max(h, run_.trajectory.time(i) - run_.trajectory.time(i - 1));
-  std::optional<State> event =
-      locate_driven(run_.trajectory, [this] { return fresh_integrator(); }, {guess, h, edge});
-  if (!event || event->t < edge) return event;
-  // Multipliers are functions of the pose rather than of time where that comes to rest.
-  if (const auto near = locate_near(h)) event->lambda = near->lambda;
-  return event;
+  auto led = locate_driven(
+      run_.trajectory, [this] { return fresh_integrator(); }, guess, h);
+  if (!led) return std::nullopt;
+  led_off_ = led->error;
+  return std::move(led->state);
 }
 
 std::optional<State> Stepper::Loop::locate(double h, double latest) {
@@ -200,9 +199,12 @@ std::optional<State> Stepper::Loop::locate(double h, double latest) {
   }
   if (leads() && !(event && regular_when_deployed(run_.trajectory, *event))) {
     // Where a drive goes on at speed both may be right, and multipliers are those of more poses.
-    std::optional<State> led = locate_led(now().t, h, next_edge());
+    std::optional<State> led = locate_led(now().t, h);
     const bool passed = std::isinf(latest);  // and is there
-    if (led ? !(event && same_state(*led, *event, h)) : !passed) event = std::move(led);
+    if (led ? !(event && same_state(*led, *event, h)) : !passed)
+      event = std::move(led);
+    else
+      led_off_ = 0;
   }
   if (event && event->t > latest) event.reset();
   return event;
@@ -264,16 +266,18 @@ bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<Stat
     if (!regular && leads()) {
       // Forces so near the pose are those of rounding: where nothing can happen on the way, it is gone at
       // once.
-      const double edge = next_edge();
-      if (!goes_on && !watched() && edge <= grid_.end()) event = locate_led(edge, h, edge);
+      const double edge = next_prescribed_edge(run_.trajectory);
+      if (!goes_on && !watched() && edge <= grid_.end()) event = locate_led(edge, h);
       if (event && event->t == edge) return regular_ = false, true;
       event.reset();
     }
     if (regular || leads()) margin_ = stepping::deployed_already;
   }
   if (!arrives(to)) return false;
-  if (run_.options.at_deployed == "stop" && leads() && !regular_when_deployed(run_.trajectory, to.state))
-    event = locate_led(part_end_, h, part_end_);
+  if (run_.options.at_deployed == "stop" && leads() && !regular_when_deployed(run_.trajectory, to.state)) {
+    event = locate_led(part_end_, h);
+    if (!event) led_off_ = std::numeric_limits<double>::infinity();
+  }
   regular_ = !event;
   if (event) return true;
   event = to.state;
@@ -284,6 +288,7 @@ bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<Stat
 // The deployed pose where this step reaches it; a step that failed without that is tried in parts. False
 // where the run ends.
 bool Stepper::Loop::find_deployed(Probe& to, double& h, std::optional<State>& event) {
+  led_off_ = 0;
   if (!to.report.ok() && may_cross(1.5 * h) && !leads()) event = locate(h, now().t + 1.05 * h);
   if (!event && !to.report.ok()) {
     to.state = now();
@@ -357,10 +362,22 @@ int Stepper::Loop::side(const Crossing& crossing, const State& event, double h) 
   return 1;
 }
 
+// Next to a flat pose steps are of rounding, and what was found instead may be no better.
+void Stepper::Loop::tell_led_off(double t) {
+  constexpr double told = 1e-6;
+  if (!(led_off_ > told * reference_length(base_->structure))) return;
+  char off[64] = "the state is that of a step that ends next to it";
+  if (std::isfinite(led_off_)) std::snprintf(off, sizeof off, "the state may be off by %.2g m", led_off_);
+  run_.warnings.push_back("at t = " + seconds(t) +
+                          ": the deployed pose to which a drive leads was not found well, and " + off +
+                          ": make solver.step smaller");
+}
+
 bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
   constexpr double even = 1e-3;
   deployed_ = true;
   run_.events.push_back({.name = "deployed", .t = event.t, .kind = "deployed"});
+  tell_led_off(event.t);
   look_for_turn(event);
   const double off = uneven(event);
   if (off > even) {

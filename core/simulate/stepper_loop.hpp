@@ -446,10 +446,11 @@ class Stepper::Loop {
   std::optional<Dip> dip_inside(const Probe& to);
   std::optional<Dip> dip_at_end(const Probe& to, double h);
   bool leads();
-  std::optional<State> locate_led(double guess, double h, double edge);
+  std::optional<State> locate_led(double guess, double h);
   bool rests_deployed(const Probe& to, double h, std::optional<State>& event);
   bool find_deployed(Probe& to, double& h, std::optional<State>& event);
   double uneven(const State& event);
+  void tell_led_off(double t);
   bool deployed(State& event, Probe& to, double h);
   bool latch();
   void step_over(Probe& to, double& h);
@@ -489,6 +490,7 @@ class Stepper::Loop {
   double margin_ = stepping::singular_margin;  // a tenth of where the run began, if that is less
   const System* asked_ = nullptr;              // whose drives
   bool leads_ = false;                         // lead to the deployed pose
+  double led_off_ = 0;                         // by how much the state there may be off [m]
   VectorXd q_;
   std::size_t new_ = 0, part_ = 0;    // first state that was not handed over, first of the present part
   double last_step_ = 0, swing_ = 0;  // of the control of steps: where that begins anew, Stepper's

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace unfurl {
 namespace {
@@ -84,6 +85,29 @@ void add_edges(const TimeFunction& f, double step, std::vector<TimeEdge>& edges)
   }
 }
 
+void add_prescribed(const Structure& structure, double step, std::vector<TimeEdge>& edges) {
+  for (const Constraint& c : structure.constraints) add_edges(c.target, step, edges);
+  for (const Stop& stop : structure.stops) add_edges(stop.reel, step, edges);
+  for (const Rod& rod : structure.rods)
+    if (rod.expansion != 0) add_edges(rod.warming, step, edges);
+}
+
+// Times that differ by their rounding are one; it jumps if one of them does, at the last that does: there
+// all of them have jumped, and before_jump() none.
+std::vector<TimeEdge> distinct_edges(std::vector<TimeEdge> edges) {
+  std::sort(edges.begin(), edges.end(), [](const TimeEdge& a, const TimeEdge& b) { return a.t < b.t; });
+  std::vector<TimeEdge> distinct;
+  for (const TimeEdge& edge : edges) {
+    if (distinct.empty() || edge.t - distinct.back().t > 4e-16 * std::abs(edge.t)) {
+      distinct.push_back(edge);
+    } else {
+      if (edge.jump || edge.impact) distinct.back().t = edge.t;
+      distinct.back().jump |= edge.jump, distinct.back().impact |= edge.impact;
+    }
+  }
+  return distinct;
+}
+
 }  // namespace
 
 Structure pieces_at(Structure structure, double t) {
@@ -95,12 +119,15 @@ Structure pieces_at(Structure structure, double t) {
   return structure;
 }
 
+std::vector<TimeEdge> prescribed_edges(const Structure& structure, double step) {
+  std::vector<TimeEdge> edges;
+  add_prescribed(structure, step, edges);
+  return distinct_edges(std::move(edges));
+}
+
 std::vector<TimeEdge> time_edges(const Structure& structure, double step) {
   std::vector<TimeEdge> edges;
-  for (const Constraint& c : structure.constraints) add_edges(c.target, step, edges);
-  for (const Stop& stop : structure.stops) add_edges(stop.reel, step, edges);
-  for (const Rod& rod : structure.rods)
-    if (rod.expansion != 0) add_edges(rod.warming, step, edges);
+  add_prescribed(structure, step, edges);
   for (const Force& f : structure.forces)
     for (const TimeFunction* function : {&f.size, &f.unstressed, &f.motor.command}) {
       const std::size_t own = edges.size();
@@ -112,19 +139,7 @@ std::vector<TimeEdge> time_edges(const Structure& structure, double step) {
         edges[i].impact = false;
       }
     }
-  std::sort(edges.begin(), edges.end(), [](const TimeEdge& a, const TimeEdge& b) { return a.t < b.t; });
-  // Times that differ by their rounding are one; it jumps if one of them does, at the last that does: there
-  // all of them have jumped, and before_jump() none.
-  std::vector<TimeEdge> distinct;
-  for (const TimeEdge& edge : edges) {
-    if (distinct.empty() || edge.t - distinct.back().t > 4e-16 * std::abs(edge.t)) {
-      distinct.push_back(edge);
-    } else {
-      if (edge.jump || edge.impact) distinct.back().t = edge.t;
-      distinct.back().jump |= edge.jump, distinct.back().impact |= edge.impact;
-    }
-  }
-  return distinct;
+  return distinct_edges(std::move(edges));
 }
 
 }  // namespace unfurl

@@ -45,6 +45,8 @@ inline bool same_instant(double before, double after) {
 //                    points would shatter the grid for it. Of these only those at which it jumps much more
 //                    than at most others (a spike, a corner), lest a step pass over them.
 std::vector<TimeEdge> time_edges(const Structure& structure, double step);
+// Of these, those of what constraints prescribe: where no force begins or ends.
+std::vector<TimeEdge> prescribed_edges(const Structure& structure, double step);
 
 // A structure for which what it prescribes at t, and until the next edge, is so at all times.
 Structure pieces_at(Structure structure, double t);
