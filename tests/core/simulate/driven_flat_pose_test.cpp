@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "core/diagnostics/diagnostics.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -18,6 +20,7 @@ namespace driven_flat_pose_test {
 
 namespace {
 
+using testing::number;
 using testing::run_scene;
 
 constexpr double start = 60 * radians_per_degree;
@@ -106,17 +109,37 @@ TEST_CASE("what moves beside a drive that comes to rest in a flat pose goes on u
     }
 }
 
-// A payload that hangs from the second leg's end: a pendulum on a support that moves on the leg's circle.
-TEST_CASE("a payload on what a drive lays flat is where it swings to") {
-  const double length = 0.5, m = 0.5, rod = 0.2, g = 9.81, inertia = (m + rod / 3) * length * length,
-               moment = (m + rod / 2) * length;
+namespace {
+
+// What pulls a payload aside, on one line from each millisecond to the next.
+double pull(double t) {
+  const double i = std::floor(t / 1e-3 + 1e-6), part = t / 1e-3 - i;
+  return 2 * ((1 - part) * std::sin(13e-3 * i) + part * std::sin(13e-3 * (i + 1)));
+}
+std::string pulls(const std::string& node) {
+  std::string times, values;
+  for (int i = 0; i <= 1200; ++i) {
+    times += (i ? ", " : "") + number(1e-3 * i);
+    values += (i ? ", " : "") + number(pull(1e-3 * i));
+  }
+  return "[[forces]]\nkind = \"load_over_time\"\nnodes = [\"" + node + "\"]\nforce = [1, 0, 0]\ntimes = [" +
+         times + "]\nvalues = [" + values + "]\n";
+}
+
+constexpr double payload = 0.5, length = 0.5, rod = 0.2, weight = 9.81;
+
+// A payload that hangs from the second leg's end, after 1 s: a pendulum on a support that moves on the leg's
+// circle, its angle and rate.
+Eigen::Vector2d swung(bool pulled) {
   using Pair = Eigen::Vector2d;
+  constexpr double inertia = (payload + rod / 3) * length * length, moment = (payload + rod / 2) * length;
   const auto slope = [&](double t, const Pair& y) {
     const auto [f, df, ddf] = share(t);
     const double a = start * (1 - f), da = -start * df, dda = -start * ddf,
                  ax = -std::sin(a) * dda - std::cos(a) * da * da,
-                 az = std::cos(a) * dda - std::sin(a) * da * da;
-    return Pair(y[1], -moment / inertia * (ax * std::cos(y[0]) + (az + g) * std::sin(y[0])));
+                 az = std::cos(a) * dda - std::sin(a) * da * da, aside = pulled ? length * pull(t) : 0;
+    const double turning = moment * (ax * std::cos(y[0]) + (az + weight) * std::sin(y[0]));
+    return Pair(y[1], (aside * std::cos(y[0]) - turning) / inertia);
   };
   Pair y(0, 0);
   constexpr int steps = 2000;  // Runge-Kutta's, off by (4.4 / 2000)^4 or so
@@ -127,21 +150,66 @@ TEST_CASE("a payload on what a drive lays flat is where it swings to") {
                d = slope(t + h, y + h * c);
     y += h / 6 * (a + 2 * b + 2 * c + d);
   }
-  const Vec3 at(1.7 + length * std::sin(y[0]), 0, -length * std::cos(y[0])),
-      rate(length * std::cos(y[0]) * y[1], 0, length * std::sin(y[0]) * y[1]);
-  const std::string payload =
+  return y;
+}
+
+}  // namespace
+
+TEST_CASE("a payload on what a drive lays flat is where it swings to") {
+  const std::string nodes =
       R"toml(, {name = "Q", position = ["=0.7+cos(60*deg)", 0, "=sin(60*deg)-0.5"], mass = 0.5})toml";
-  const std::string scene = linkage(smooth(0), g, payload, R"(, {nodes = ["B1", "Q"], mass = 0.2})");
-  for (const char* step : {"0.01", "0.0101", "0.005"}) {
-    const Simulation run = run_scene(
-        scene, {std::string("solver.step=") + step, "structure.constraints[0].nodes=[\"B*\", \"Q\"]"});
-    CAPTURE(step, run.message);
-    REQUIRE(run.status == RunStatus::deployed);
-    CHECK(deployed_at(run) == Approx(1).epsilon(1e-14));
-    CHECK((last(run, "Q") - at).norm() < 1e-8);
-    CHECK((last(run, "Q", true) - rate).norm() <
-          1e-6);  // as much of rounding in the leg's rate next to the pose
+  for (const bool pulled : {false, true}) {
+    const Eigen::Vector2d y = swung(pulled);
+    const Vec3 at(1.7 + length * std::sin(y[0]), 0, -length * std::cos(y[0])),
+        rate(length * std::cos(y[0]) * y[1], 0, length * std::sin(y[0]) * y[1]);
+    const std::string scene = linkage(smooth(0), weight, nodes, R"(, {nodes = ["B1", "Q"], mass = 0.2})") +
+                              (pulled ? pulls("Q") : "");
+    for (const std::vector<std::string>& how :
+         std::vector<std::vector<std::string>>{{"solver.step=0.01"},
+                                               {"solver.step=0.0101"},
+                                               {"solver.step=0.005"},
+                                               {"solver.step=0.004", "solver.method=\"rk4_projected\""}}) {
+      std::vector<std::string> changes = how;
+      changes.push_back("structure.constraints[0].nodes=[\"B*\", \"Q\"]");
+      const Simulation run = run_scene(scene, changes);
+      CAPTURE(pulled, how, run.message);
+      REQUIRE(run.status == RunStatus::deployed);
+      CHECK(deployed_at(run) == Approx(1).epsilon(1e-14));
+      CHECK((last(run, "Q") - at).norm() < 1e-8);
+      // As much of rounding in the leg's rate next to the pose.
+      CHECK((last(run, "Q", true) - rate).norm() < 1e-6);
+      // The legs' and the coupler's forces have no bound there, the payload's has.
+      const VectorXd& lambda = run.trajectory.state(run.trajectory.size() - 1).lambda;
+      const std::vector<int>& rows = run.trajectory.last_model().system.rod_rows();
+      for (std::size_t i = 0; i < 4; ++i) CHECK(std::isnan(lambda[rows[i]]) == (i < 3));
+    }
   }
+}
+
+// A mass on a spring beside it swings as m x'' = -k x, 11 to 63 steps in ten of its periods, and with what
+// the method leaves of that, some (h w)^12 / 1e8 a step; and legs that a drive has brought to rest are at
+// rest.
+TEST_CASE("what swings beside what a drive lays flat takes nothing from it and has all of its swing") {
+  const std::string nodes =
+      ", {name = \"W\", position = [0, 0, -5], fixed = true}, {name = \"S\", position = [1.1, 0, -5], mass = "
+      "1}";
+  for (const double to : {0.0, -5.0})
+    for (const double stiffness : {3e3, 1e4, 4e4}) {
+      if (to == 0 && stiffness == 4e4) continue;
+      const Simulation run = run_scene(
+          linkage(smooth(to), 9.81, nodes) + "[[forces]]\nkind = \"spring\"\nnodes = [\"W\", \"S\"]\n" +
+              "free_length = 1\nstiffness = " + std::to_string(stiffness) +
+              "\n[[constraints]]\nkind = \"line\"\nnodes = [\"S\"]\ndirection = [1, 0, 0]\n",
+          {"solver.stages=8"});
+      CAPTURE(to, stiffness, run.message);
+      REQUIRE(run.status == RunStatus::deployed);
+      if (to == 0) CHECK(deployed_at(run) == Approx(1).epsilon(1e-14));
+      const double w = std::sqrt(stiffness), t = deployed_at(run);
+      CHECK(last(run, "S").x() == Approx(1 + 0.1 * std::cos(w * t)).epsilon(0).margin(1e-8));
+      CHECK(last(run, "S", true).x() == Approx(-0.1 * w * std::sin(w * t)).epsilon(0).margin(1e-6));
+      CHECK((last(run, "B1") - Vec3(1.7, 0, 0)).norm() < 1e-8);
+      if (to == 0) CHECK(last(run, "B1", true).norm() < 1e-7);
+    }
 }
 
 // The time is the drive's own, start + (to - start) share(t) = 0; B1 falls at the leg's rate. The drive's
@@ -181,6 +249,22 @@ TEST_CASE("a run goes on from a flat pose in which its drive has come to rest") 
       CHECK(deployed_at(run) == Approx(1).epsilon(1e-14));
       CHECK((last(run, "Q") - Vec3(11.8, 0, 3 - 2 * 9.81)).norm() < 1e-9);
     }
+}
+
+// By virtual work in the flat pose at rest: M per height h of the posts that each of 12 hinges of 200 N and
+// 3 m asks for, and the posts' own share of it. Accelerations go with the cube root of what is left there.
+TEST_CASE("forces where a drive has come to rest in a flat pose are those of statics") {
+  for (const char* method : {"dvm", "rk4"}) {
+    const Scene scene = read_scene_file(
+        find_scene("hoop6_motor"),
+        {"structure.model=joints", "structure.fold_angle=50", "structure.hinge_force=200",
+         "constraints[0].to=0", "constraints[0].duration=0.8", std::string("solver.method=") + method});
+    const Simulation run = simulate(build_model(scene), scene.solver);
+    CAPTURE(method, run.message);
+    REQUIRE(run.status == RunStatus::deployed);
+    const Diagnostics of = diagnose(run);
+    CHECK(of.axial_force.row(of.axial_force.rows() - 1).maxCoeff() == Approx(200).epsilon(1e-4));
+  }
 }
 
 TEST_CASE("a ring whose mean angle a motor leads is deployed when that has come to its end") {
