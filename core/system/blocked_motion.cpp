@@ -113,6 +113,52 @@ MatrixXd dense_rows(const SparseRows& G, const std::vector<int>& rows) {
   return out;
 }
 
+// Of a set, what bears the self-stress that its smallest singular value but for round-off nearly is, and all
+// that takes part in nothing else: without what hangs from it.
+std::vector<int> stressed_rows(const SparseRows& G, const std::vector<int>& set, const MatrixXd& D) {
+  constexpr double bears = 1e-3;  // what hangs from it bears as little as that singular value
+  const MatrixXd nearly = column_complement(D, nearly_free), dependent = column_complement(D, dependent_row);
+  if (nearly.cols() != dependent.cols() + 1) return {};
+  const MatrixXd other = nearly - dependent * (dependent.transpose() * nearly);
+  Index most = 0;
+  other.colwise().norm().maxCoeff(&most);
+  const VectorXd stress = other.col(most).cwiseAbs();
+  std::vector<bool> touched(static_cast<std::size_t>(G.cols()), false);
+  const auto each = [&](int row, const auto& act) {
+    for (SparseRows::InnerIterator it(G, row); it; ++it) act(static_cast<std::size_t>(it.col()));
+  };
+  for (std::size_t k = 0; k < set.size(); ++k)
+    if (stress[static_cast<Index>(k)] > bears * stress.maxCoeff())
+      each(set[k], [&](std::size_t column) { touched[column] = true; });
+  std::vector<int> out = set;
+  std::erase_if(out, [&](int row) {
+    bool beyond = false;
+    each(row, [&](std::size_t column) { beyond = beyond || !touched[column]; });
+    return beyond;
+  });
+  return out;
+}
+
+// What stands still by these rows, if it nearly does not.
+void find_held(const System& system, const ConstVec& q, const SparseRows& G, const std::vector<int>& rows,
+               const MatrixXd& D, const VectorXd& values, Doubt& doubt) {
+  // Slender bodies have several small values of alike size.
+  const Index rank = (values.array() > dependent_row).count();
+  const auto stands_alone = [&] { return rank == 1 || values[rank - 1] < alone * values[rank - 2]; };
+  if (rank == 0 || !(values[rank - 1] < nearly_free) || !stands_alone()) return;
+  const Index rigid = rigid_motions(picked_rows(G, rows), q, system.ghosts());
+  if (rank + rigid == D.cols()) {
+    doubt.nearly = values[rank - 1];
+    doubt.held = rows;
+    doubt.afloat = rigid > 0;
+    return;
+  }
+  const std::vector<int> part = stressed_rows(G, rows, D);
+  if (part.empty() || part.size() == rows.size()) return;
+  const MatrixXd of_part = dense_rows(G, part);
+  find_held(system, q, G, part, of_part, singular_values(of_part), doubt);
+}
+
 Doubt doubt_of_rows(const System& system, const ConstVec& q) {
   Doubt doubt;
   // A drive moves what the others leave free, so that with its row they look independent.
@@ -128,15 +174,7 @@ Doubt doubt_of_rows(const System& system, const ConstVec& q) {
     const VectorXd values = singular_values(D);
     for (const double value : values)
       if (value > round_off && value < meant) doubt.misfit = std::max(doubt.misfit, value);
-    // Slender bodies have several small values of alike size.
-    const Index rank = (values.array() > dependent_row).count();
-    const auto stands_alone = [&] { return rank == 1 || values[rank - 1] < alone * values[rank - 2]; };
-    if (rank == 0 || !(values[rank - 1] < nearly_free) || !stands_alone()) continue;
-    const Index rigid = rigid_motions(picked_rows(G, set), q, system.ghosts());
-    if (rank + rigid != D.cols()) continue;
-    doubt.nearly = values[rank - 1];
-    doubt.held = set;
-    doubt.afloat = rigid > 0;
+    find_held(system, q, G, set, D, values, doubt);
   }
   return doubt;
 }
