@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -29,7 +30,10 @@ constexpr double settled_to = 1e-13;
 constexpr std::size_t most_back = 100;                        // states of the run that nodes are solved from
 constexpr double far_from_pose = 1e-2, clear_of_pose = 1e-3;  // of what remains
 
-using DrivenStates = std::vector<State>;
+struct DrivenSample : State {
+  VectorXd driven = {};  // of its rates what drives make of rest
+};
+using DrivenStates = std::vector<DrivenSample>;
 
 // The last state of the run that is not next to the pose, or its model's first.
 std::size_t far_state(const Trajectory& trajectory) {
@@ -45,6 +49,59 @@ std::size_t far_state(const Trajectory& trajectory) {
   }
 }
 
+// Of what is left to the deployed pose, by motions of some solved coordinates.
+class LeftRate {
+ public:
+  explicit LeftRate(const Trajectory& trajectory) : model_(trajectory.last_model()) {
+    const State& state = trajectory.state(far_state(trajectory));
+    q_.resize(model_.system.coordinates());
+    v_.resize(q_.size());
+    model_.system.expand(state.z, q_);
+    any_.resize(model_.system.solved_coordinates());
+    for (Index k = 0; k < any_.size(); ++k) any_[k] = std::sin(1.0 + static_cast<double>(k));
+    all_ = std::abs(of(any_));
+  }
+  double of(const VectorXd& w) {
+    const Deployment& deployment = model_.structure.deployment;
+    model_.system.expand_rate(w, v_);
+    return deployment.folds() ? deployment.fold_rate(q_, v_) : deployment.remaining_rate(q_, v_);
+  }
+  // Does any motion of those that are 1 change it?
+  bool takes(const VectorXd& those) { return std::abs(of(those.cwiseProduct(any_))) > 1e-9 * all_; }
+
+ private:
+  const Model& model_;
+  VectorXd q_, v_, any_;
+  double all_;
+};
+
+// What is interpolated: what drives alone move, where that says all of what is left; as in linkages that
+// float it does not, all that constraints join to what is left. The rest is free.
+struct DrivenParts {
+  std::vector<Index> free;
+  bool led;  // what is interpolated is known whatever acts
+};
+DrivenParts driven_parts(const Trajectory& trajectory) {
+  const System& system = trajectory.last_model().system;
+  const Index n = system.solved_coordinates();
+  DrivenParts out{free_coordinates(system, trajectory.state(far_state(trajectory))), true};
+  LeftRate left(trajectory);
+  VectorXd those = VectorXd::Zero(n);
+  those(out.free).setOnes();
+  if (!left.takes(those)) return out;
+  CoupledColumns columns(n);
+  columns.join_rows_of(system.jacobian_pattern());
+  std::map<Index, VectorXd> sets;
+  for (Index i = 0; i < n; ++i) sets.try_emplace(columns.set_of(i), VectorXd::Zero(n)).first->second[i] = 1;
+  out = {{}, false};
+  for (const auto& [first, set] : sets)
+    if (!left.takes(set))
+      for (Index i = 0; i < n; ++i)
+        if (set[i] > 0) out.free.push_back(i);
+  std::ranges::sort(out.free);
+  return out;
+}
+
 class DrivenLocator {
  public:
   DrivenLocator(const Trajectory& trajectory, const std::function<std::unique_ptr<Integrator>()>& fresh,
@@ -55,12 +112,15 @@ class DrivenLocator {
         system_(model_.system),
         jacobian_(system_.jacobian_pattern()),
         saddle_(system_.mass(), jacobian_),
-        free_(system_, free_coordinates(system_, trajectory.state(far_state(trajectory)))),
+        parts_(driven_parts(trajectory)),
+        free_(system_, parts_.free),
         guess_(guess),
-        h_(h),
-        edge_(next_prescribed_edge(trajectory)) {
+        h_(h) {
     first_ = trajectory.size() - 1;
-    const std::vector<TimeEdge> edges = prescribed_edges(model_.structure, h);
+    const std::vector<TimeEdge> all = time_edges(model_.structure, h),
+                                edges = parts_.led ? prescribed_edges(model_.structure, h) : all;
+    const auto next = edge_after(edges, trajectory.end_time());
+    edge_ = next == edges.end() ? std::numeric_limits<double>::infinity() : next->t;
     const auto smooth = [&](std::size_t i) {
       const double before = trajectory.time(i - 1), after = trajectory.time(i);
       const auto edge = edge_after(edges, before_jump(before));
@@ -68,7 +128,7 @@ class DrivenLocator {
              (edge == edges.end() || edge->t > before + 1e-6 * h);
     };
     while (first_ > 0 && trajectory.size() - first_ < most_back && smooth(first_)) --first_;
-    for (const TimeEdge& edge : time_edges(model_.structure, h)) edges_.push_back(edge.t);
+    for (const TimeEdge& edge : all) edges_.push_back(edge.t);
     find_resting();
   }
 
@@ -101,7 +161,7 @@ class DrivenLocator {
     DrivenStates samples{};
   };
 
-  // Where prescribed motions are at rest at the edge, they are so exactly.
+  // Where prescribed motions are at rest at the edge, what they drive is.
   void find_resting() {
     rests_ = VectorXd::Zero(system_.solved_coordinates());
     if (!std::isfinite(edge_)) return;
@@ -113,7 +173,7 @@ class DrivenLocator {
       if (SparseRows::InnerIterator it(jacobian_, r); it && std::abs(rate[r]) * h_ > nothing_left)
         moves[columns.set_of(it.col())] = 1;
     for (Index i = 0; i < rests_.size(); ++i) rests_[i] = 1 - moves[columns.set_of(i)];
-    rests_(free_.coordinates()).setZero();
+    pose_rests_ = !LeftRate(trajectory_).takes(VectorXd::Ones(rests_.size()) - rests_);
   }
 
   // How far some coordinates depend on the highest degree.
@@ -213,7 +273,7 @@ class DrivenLocator {
   }
 
   // On the constraints to the last digit, of weak directions too.
-  bool put_on(State& state) {
+  bool put_on(DrivenSample& state) {
     constexpr double near = 1e-3;
     system_.follow(state);
     VectorXd q(system_.coordinates()), phi(system_.constraints()), x(state.z.size()), y(phi.size());
@@ -231,7 +291,9 @@ class DrivenLocator {
     system_.target_rate(state.t, rate);
     const VectorXd p = system_.mass() * state.w;
     saddle_.solve(p, rate, state.w, y);
-    return state.w.allFinite();
+    state.driven.resize(x.size());
+    saddle_.solve(none, rate, state.driven, y);
+    return state.w.allFinite() && state.driven.allFinite();
   }
 
   // States at times `apart`, on both sides of the pose or before it only.
@@ -243,7 +305,7 @@ class DrivenLocator {
     for (int k = 0; k < count; ++k) {
       const double t = guess + (behind - (count - 1 - k)) * apart;
       const State& last = last_before(t);
-      State next = out.empty() || out.back().t < last.t ? last : out.back();
+      DrivenSample next{out.empty() || out.back().t < last.t ? last : State(out.back())};
       if (!step_to(next, t) || !put_on(next)) return false;
       out.push_back(std::move(next));
     }
@@ -283,13 +345,11 @@ class DrivenLocator {
       for (std::size_t k = 0; k < values.size(); ++k) sum += share[k] * values[k];
       return sum;
     };
-    if (samples.back().t < edge_ && std::isfinite(edge_)) {
+    if (samples.back().t < edge_ && pose_rests_) {
       State there = at(edge_, samples);
-      if (std::abs(remaining_rate(model_, there)) * h_ < nothing_left) {
-        system_.follow(samples.back());
-        project(system_, there);
-        if (std::abs(left(there)) < nothing_left) return edge_;
-      }
+      system_.follow(samples.back());
+      project(system_, there);
+      if (std::abs(left(there)) < nothing_left) return edge_;
     }
     double low = trajectory_.end_time(), high = std::min(edge_, guess_ + h_);
     if (!(remains(low) > 0) || !(remains(high) <= 0)) return std::nullopt;
@@ -313,9 +373,9 @@ class DrivenLocator {
     for (std::size_t k = 0; k < samples.size(); ++k) {
       out.z += share[k] * samples[k].z;
       out.w += share[k] * samples[k].w;
+      if (t == edge_) out.w -= share[k] * samples[k].driven.cwiseProduct(rests_);
       if (out.tension.size() > 0) out.tension += share[k] * samples[k].tension;
     }
-    if (t == edge_) out.w -= out.w.cwiseProduct(rests_);
     return out;
   }
 
@@ -362,11 +422,13 @@ class DrivenLocator {
   SparseRows jacobian_;
   SaddleSolver saddle_;
   std::vector<double> scratch_;
+  DrivenParts parts_;
   FreeMotion free_;
   double guess_, h_;
-  double edge_;                // the next time at which something that is prescribed begins or ends
+  double edge_;                // the next time at which what is interpolated is not smooth
   std::vector<double> edges_;  // those of all that acts
-  VectorXd rests_;             // 1 of coordinates that drives move, and that are at rest at the edge
+  VectorXd rests_;             // 1 of coordinates whose drives are at rest at the edge
+  bool pose_rests_ = false;    // so are all that lead there
   std::vector<Tried> tried_;
   std::vector<State> ahead_;
   std::size_t first_;  // state of the run to go back to
@@ -386,8 +448,8 @@ bool drives_lead_to_deployed(const Trajectory& trajectory) {
   const Model& model = trajectory.last_model();
   const Deployment& deployment = model.structure.deployment;
   if (model.system.drives().empty() || deployment.empty()) return false;
-  VectorXd q(model.system.coordinates()), free(q.size());
   const State& state = trajectory.state(far_state(trajectory));
+  VectorXd q(model.system.coordinates()), free(q.size());
   model.system.expand(state.z, q);
   for (Index k = 0; k < free.size(); ++k) free[k] = std::sin(1.0 + static_cast<double>(k));  // any motion
   const System near = model.system.at(state);
