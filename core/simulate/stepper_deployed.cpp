@@ -370,7 +370,7 @@ void Stepper::Loop::tell_led_off(double t) {
   if (std::isfinite(led_off_)) std::snprintf(off, sizeof off, "the state may be off by %.2g m", led_off_);
   run_.warnings.push_back("at t = " + seconds(t) +
                           ": the deployed pose to which a drive leads was not found well, and " + off +
-                          ": make solver.step smaller");
+                          ": try a smaller solver.step");
 }
 
 bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
