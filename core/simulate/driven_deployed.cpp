@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -91,13 +92,14 @@ DrivenParts driven_parts(const Trajectory& trajectory) {
   if (!left.takes(those)) return out;
   CoupledColumns columns(n);
   columns.join_rows_of(system.jacobian_pattern());
-  std::map<Index, VectorXd> sets;
-  for (Index i = 0; i < n; ++i) sets.try_emplace(columns.set_of(i), VectorXd::Zero(n)).first->second[i] = 1;
+  std::map<Index, std::vector<Index>> sets;
+  for (Index i = 0; i < n; ++i) sets[columns.set_of(i)].push_back(i);
   out = {{}, false};
-  for (const auto& [first, set] : sets)
-    if (!left.takes(set))
-      for (Index i = 0; i < n; ++i)
-        if (set[i] > 0) out.free.push_back(i);
+  for (const auto& [first, set] : sets) {
+    those.setZero();
+    those(set).setOnes();
+    if (!left.takes(those)) std::ranges::copy(set, std::back_inserter(out.free));
+  }
   std::ranges::sort(out.free);
   return out;
 }
@@ -143,11 +145,12 @@ class DrivenLocator {
       if (!t) continue;
       next.t = *t;
       next.rough = rough(*t, next.samples, led);
+      const double size = next.samples.back().z.lpNorm<Eigen::Infinity>();
       if (next.rough < best.rough) best = next;
       tried_.push_back(std::move(next));
-      if (best.rough < settled_to * best.samples.back().z.lpNorm<Eigen::Infinity>()) break;
+      if (best.rough < settled_to * size) break;
     }
-    if (tried_.empty()) return std::nullopt;
+    if (best.samples.empty()) return std::nullopt;
     DrivenDeployed out{polished(at(best.t, best.samples), best.samples), best.rough};
     out.error = std::max(out.error, move_free(out.state, best.samples));
     DrivenStates before;
