@@ -24,6 +24,17 @@ bool same_state(const State& a, const State& b, double h) {
 
 }  // namespace
 
+// Could the fold angle reach zero within a time? Where sine * rate is constant, after sine / (2 rate). Not
+// where a stop has just thrown it back.
+bool Stepper::Loop::may_cross(double within) {
+  if (deployment_.empty() || deployed_) return false;
+  const double sine = fold(now());
+  const double rate = remaining_rate(model(), now());
+  const std::size_t last = run_.trajectory.size() - 1;
+  const bool thrown_back = rate > 0 && last > 0 && run_.trajectory.time(last - 1) == now().t;
+  return sine > 0 && ((sine <= stepping::singular_margin && !thrown_back) || sine + 2 * within * rate <= 0);
+}
+
 // A drive comes to its end in the deployed pose: from then on what is left is zero but for rounding, and for
 // what the method drifts from the drive, and whose sign that has says nothing.
 bool Stepper::Loop::arrives(const Probe& to) {

@@ -417,17 +417,7 @@ class Stepper::Loop {
     return before > margin_ && after <= margin_ && deployment_.is_passed(before, after);
   }
 
-  // Could the fold angle reach zero within a time? Where sine * rate is constant, after sine / (2 rate). Not
-  // where a stop has just thrown it back.
-  bool may_cross(double within) {
-    if (deployment_.empty() || deployed_) return false;
-    const double sine = fold(now());
-    const double rate = remaining_rate(model(), now());
-    const std::size_t last = run_.trajectory.size() - 1;
-    const bool thrown_back = rate > 0 && last > 0 && run_.trajectory.time(last - 1) == now().t;
-    return sine > 0 && ((sine <= stepping::singular_margin && !thrown_back) || sine + 2 * within * rate <= 0);
-  }
-
+  bool may_cross(double within);
   double next_edge() const;
   std::size_t smooth_since() const;
   bool edge_comes_first(Probe& to, double h, std::optional<State>& event);
