@@ -247,7 +247,8 @@ std::optional<Crossing> Stepper::Loop::find_crossing(Probe& to, double h) {
     probe.report = step(probe.state, length);
     if (!probe.report.ok() && deployment_.empty()) {  // too long for what swings faster, as a whole
       probe.state = now();
-      probe.report = step_in_parts(*probing_, probe.state, length, step);
+      if (at_its_end(model().structure, system().at(now()), now(), length).empty())
+        probe.report = step_in_parts(*probing_, probe.state, length, step);
       if (!probe.report.ok()) unsolved = std::min(unsolved, length);
     } else if (!probe.report.ok()) {
       if (!across) {
