@@ -126,10 +126,12 @@ class DrivenLocator {
     const auto smooth = [&](std::size_t i) {
       const double before = trajectory.time(i - 1), after = trajectory.time(i);
       const auto edge = edge_after(edges, before_jump(before));
-      return &trajectory.model(i - 1) == &model_ && !same_instant(before, after) &&
+      return &trajectory.model(i - 1) == &model_ && (parts_.led || !same_instant(before, after)) &&
              (edge == edges.end() || edge->t > before + 1e-6 * h);
     };
     while (first_ > 0 && trajectory.size() - first_ < most_back && smooth(first_)) --first_;
+    for (std::size_t i = first_ + 1; i < trajectory.size(); ++i)
+      if (same_instant(trajectory.time(i - 1), trajectory.time(i))) struck_ = i;
     for (const TimeEdge& edge : all) edges_.push_back(edge.t);
     find_resting();
   }
@@ -195,6 +197,7 @@ class DrivenLocator {
     for (std::size_t i = 1; i < samples.size() && samples[i].t < out.t; ++i)
       if (std::abs(left(samples[i])) > clear_of_pose) from = i;
     State state = samples[from];
+    if (struck_ > 0 && trajectory_.time(struck_) > state.t) state = trajectory_.state(struck_);
     if (state.tension.size() == 0) {
       system_.follow(state);
       const double error =
@@ -434,7 +437,8 @@ class DrivenLocator {
   bool pose_rests_ = false;    // so are all that lead there
   std::vector<Tried> tried_;
   std::vector<State> ahead_;
-  std::size_t first_;  // state of the run to go back to
+  std::size_t first_;       // state of the run to go back to
+  std::size_t struck_ = 0;  // the one behind the last impact since, which what drives lead does not feel
 };
 
 }  // namespace

@@ -282,6 +282,25 @@ TEST_CASE("what is not known of a flat pose to which a drive leads is told") {
   }
 }
 
+// A ball falls beside it and leaves the ground with 0.8 of its rate, up to two steps before the pose.
+TEST_CASE("what strikes beside what a drive lays flat takes nothing from it") {
+  for (const double landing : {0.95, 0.98, 0.993}) {
+    const std::string ball = ", {name = \"S\", position = [5, 0, " +
+                             std::to_string(0.5 * 9.81 * landing * landing) + "], mass = 1}";
+    const Simulation run = run_scene(linkage(smooth(0), 9.81, ball) +
+                                         "[[constraints]]\nkind = \"coordinate_stop\"\nnodes = [\"S\"]\n"
+                                         "direction = [0, 0, 1]\nmin = 0\nrestitution = 0.8\n",
+                                     {"solver.step=0.004"});
+    CAPTURE(landing, run.message);
+    REQUIRE(run.status == RunStatus::deployed);
+    CHECK(deployed_at(run) == Approx(1).epsilon(1e-14));
+    const double left = 1 - landing;  // its height is given to 1e-6 m
+    CHECK(last(run, "S").z() == Approx(9.81 * left * (0.8 * landing - 0.5 * left)).epsilon(0).margin(2e-6));
+    CHECK((last(run, "B1") - Vec3(1.7, 0, 0)).norm() < 1e-8);
+    CHECK(last(run, "B1", true).norm() < 1e-6);
+  }
+}
+
 // The time is the drive's own, start + (to - start) share(t) = 0; B1 falls at the leg's rate. The drive's
 // work of some 20 J is that of a quadrature of order 6.
 TEST_CASE("a drive that leads through a flat pose deploys it at its own time at every step") {
