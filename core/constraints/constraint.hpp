@@ -61,6 +61,11 @@ class ConstraintBlock {
   virtual bool values(int /*poses*/, const double* /*q*/, Index /*stride*/, double* /*phi*/) const {
     return false;
   }
+  // What motions from the pose q0 change of each row, where nothing cancels: round-off is relative to the
+  // motion. Of rows that do not depend on time.
+  virtual bool changes(int /*poses*/, const double* /*q0*/, const double* /*moves*/, double* /*phi*/) const {
+    return false;
+  }
   virtual bool add_forces(int /*poses*/, const double* /*q*/, Index /*stride*/, const double* /*lambda*/,
                           const double* /*scale*/, double* /*f*/) const {
     return false;

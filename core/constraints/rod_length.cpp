@@ -80,6 +80,12 @@ class RodLength final : public ConstraintBlock {
     return true;
   }
 
+  bool changes(int poses, const double* q0, const double* moves, double* phi) const override {
+    if (!warmed_.empty()) return false;
+    with_wide_columns(poses, [=, this](auto k) { changes_of<k()>(q0, moves, phi); });
+    return true;
+  }
+
   bool add_forces(int poses, const double* q, Index stride, const double* lambda, const double* scale,
                   double* f) const override {
     with_wide_columns(poses, [=, this](auto k) { add_forces_of<k()>(q, stride, lambda, scale, f); });
@@ -118,6 +124,21 @@ class RodLength final : public ConstraintBlock {
                      dz = Lanes<K>(xb + 2 * stride) - Lanes<K>(xa + 2 * stride);
       const double l = length_[r];
       ((dx * dx + dy * dy + dz * dz - Lanes<K>::all(l * l)) / Lanes<K>::all(2.0 * l)).store(phi);
+    }
+  }
+
+  // |d + u|^2 / 2l - |d|^2 / 2l = (d + u / 2) . u / l.
+  template <LaneCount K>
+  void changes_of(const double* q0, const double* moves, double* phi) const {
+    for (std::size_t r = 0; r < a_.size(); ++r, phi += K) {
+      const double* const from_a = moves + static_cast<Index>(a_[r]) * K;
+      const double* const from_b = moves + static_cast<Index>(b_[r]) * K;
+      Lanes<K> sum = Lanes<K>::all(0.0);
+      for (int k = 0; k < 3; ++k) {
+        const Lanes<K> u = Lanes<K>(from_b + k * K) - Lanes<K>(from_a + k * K);
+        sum = sum + (Lanes<K>::all(q0[b_[r] + k] - q0[a_[r] + k]) + 0.5 * u) * u;
+      }
+      (sum / Lanes<K>::all(length_[r])).store(phi);
     }
   }
 

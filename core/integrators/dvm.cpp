@@ -80,58 +80,6 @@ void Dvm::freeze_in_the_middle(StepReport& report) {
   freeze(pose_, report);
 }
 
-// Is there a mode so weak that the errors which count as round-off elsewhere would show in the motion? Next
-// to a dead centre, where the motion is small and the constraints hold it by small angles.
-bool Dvm::needs_care() {
-  if (!frozen_ || eq_.phi.rows() == 0) return false;
-  const double motion = largest_magnitude(eq_.dX.data(), eq_.dX.size());
-  const double reach =
-      std::max(eq_.start_pose().lpNorm<Eigen::Infinity>(), system_.constraint_lengths().maxCoeff());
-  const double needed =
-      saddle_.motion_of_error() * constraint_noise(reach, reach) / std::max(harmless_ * motion, 1e-300);
-  needed_pivot_ = std::pow(std::min(needed, strong), 2);
-  if (needed > 1) {  // so small a motion that every error shows
-    saddle_.weakest_pivot(needed_pivot_);
-    return true;
-  }
-  return saddle_.weakest_pivot(needed_pivot_) < needed_pivot_;
-}
-
-// The constraints in increments, corrections from factors that see every mode, until the corrections no
-// longer get smaller: residuals do not tell, because a small one may be a large error of a weak mode.
-bool Dvm::tight_iterations(const State& state, StepReport& report) {
-  constexpr int most = 40;
-  eq_.take_rods_as_unknowns(false);
-  eq_.in_increments = true;
-  careful_ = !saddle_.fine();  // fine factors leave out by themselves what the rows cannot reach
-  feed_ = true;
-  double best = infinity;
-  int without_gain = 0;
-  bool done = false, good = false;
-  for (int it = 0; it <= most; ++it) {
-    eq_.evaluate();
-    report.residual = eq_.level();
-    if (done) good = report.residual <= accepted;
-    if (done || !std::isfinite(report.residual)) break;
-    ++report.newton_iterations;
-    correct(report);
-    const double size = largest_magnitude(rhs_f_.data(), eq_.dX.size()),
-                 motion = largest_magnitude(eq_.dX.data(), eq_.dX.size());
-    without_gain = size < 0.5 * best ? 0 : without_gain + 1;
-    best = std::min(best, size);
-    done = size <= std::numeric_limits<double>::epsilon() * motion || without_gain >= 2;
-  }
-  eq_.in_increments = false;
-  if (good) {
-    report.status = StepStatus::converged;
-    return true;
-  }
-  tight_ = false;
-  predict(state, eq_.h);
-  freeze(eq_.start_pose(), report);
-  return false;
-}
-
 void Dvm::iterate(const State& state, double h, StepReport& report) {
   if (!stiff_) {
     if (frozen_iterations(report)) return;

@@ -14,6 +14,7 @@
 #include "core/integrators/settling.hpp"
 #include "core/integrators/stage_equations.hpp"
 #include "core/integrators/stiff_correction.hpp"
+#include "core/math/anderson.hpp"
 #include "core/math/saddle_solver.hpp"
 
 namespace unfurl {
@@ -102,6 +103,7 @@ class Dvm final : public Integrator {
   // grow where a motion is unstable, in a ring of joints a thousandfold while it opens. Singular values above
   // `strong` are never looked at.
   static constexpr double harmless = 1e-10, harmless_in_large = 1e-6, strong = 1e-3;
+  static constexpr double nothing = 1e-4;  // of what is harmless: such steps are solved so far
   // Where a singular value sigma is a length of the pose, rounding leaves eps / sigma of it, and eps /
   // sigma^2 of a velocity that the constraints are asked for there.
   static constexpr double weak_pivot = 1e-6 * 1e-6;  // sigma^2
@@ -180,6 +182,9 @@ class Dvm final : public Integrator {
   Index weak_rows_ = -1;     // that look so at the start of the step; -1: not known
   Index never_weak_ = 0;     // as many as may look so and are none but redundant
   CarriedSum carried_;
+  Anderson weak_modes_;
+  int finely_ =
+      0;  // so many steps have factors in twice the digits at once, as one before did not do without
 };
 
 }  // namespace unfurl

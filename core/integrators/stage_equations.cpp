@@ -160,6 +160,7 @@ void StageEquations::evaluate() {
 }
 
 void StageEquations::constraint_changes() {
+  if (!system.rheonomic() && system.constraint_changes(q_0_, dX, phi, scratch_)) return;
   if (!increment_) increment_ = std::make_unique<ConstraintIncrement>(system);
   increment_->start(t, q_0_);
   phi_j_.resize(phi.rows());

@@ -91,11 +91,16 @@ class System {
   // r, phi, lambda: `poses` columns; of Q, which has a column more, those from `first` on).
   struct StageScratch {
     VectorXd q, f, row;  // for kinds of constraints that are asked pose by pose
+    Interleaved moves;
   };
   void expand_stages(const Interleaved& z, Index first, Interleaved& Q) const;
   void reduce_force_stages(const Interleaved& f, Interleaved& r) const;
   void constraint_stages(const double* t, const Interleaved& Q, Index first, Interleaved& phi,
                          StageScratch& scratch) const;
+  // What motions D from the pose q0 change of Phi: round-off is relative to D. False where a kind does not
+  // offer that.
+  bool constraint_changes(const ConstVec& q0, const Interleaved& D, Interleaved& phi,
+                          StageScratch& scratch) const;
   void add_constraint_force_stages(const Interleaved& Q, Index first, const Interleaved& lambda,
                                    const double* scale, Interleaved& f, StageScratch& scratch) const;
 

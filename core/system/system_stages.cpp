@@ -151,6 +151,22 @@ void System::constraint_stages(const double* t, const Interleaved& Q, Index firs
   for (const int implied : data_->implied) phi.row(implied).setZero();
 }
 
+bool System::constraint_changes(const ConstVec& q0, const Interleaved& D, Interleaved& phi,
+                                StageScratch& scratch) const {
+  const auto poses = static_cast<int>(phi.cols());
+  scratch.moves.resize(coordinates(), poses);
+  with_wide_columns(poses, [&B = data_->B, from = D.data(), to = scratch.moves.data()](auto k) {
+    multiply<k()>(B, from, to);
+  });
+  Index row = 0;
+  for (const ConstraintBlock* block : data_->kept) {
+    if (!block->changes(poses, q0.data(), scratch.moves.data(), phi.data() + row * poses)) return false;
+    row += block->rows();
+  }
+  for (const int implied : data_->implied) phi.row(implied).setZero();
+  return true;
+}
+
 void System::add_constraint_force_stages(const Interleaved& Q, Index first, const Interleaved& lambda,
                                          const double* scale, Interleaved& f, StageScratch& scratch) const {
   const auto poses = static_cast<int>(lambda.cols());

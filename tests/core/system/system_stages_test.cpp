@@ -96,4 +96,36 @@ TEST_CASE("rates of all constraints are G v less the rate of what is prescribed"
     }
 }
 
+TEST_CASE("what small motions change of rods is right to the digits of the motion") {
+  // Against long double. Phi itself would leave 1e-16 m, a ten-thousandth of these changes and more.
+  const Structure s = double_pendulum();
+  for (const bool eliminate : {true, false}) {
+    const System system(s, eliminate);
+    std::mt19937 random(11);
+    const VectorXd q0 = random_columns(system.coordinates(), 1, random);
+    const Interleaved D = 1e-12 * random_columns(system.solved_coordinates(), 3, random);
+    Interleaved phi(system.constraints(), 3);
+    System::StageScratch scratch;
+    if (!system.constraint_changes(q0, D, phi, scratch)) {
+      CHECK(!eliminate);  // rows that hold nodes do not offer it
+      continue;
+    }
+    for (Index c = 0; c < 3; ++c) {
+      VectorXd moved(system.coordinates());
+      system.expand_rate(VectorXd(D.col(c)), moved);
+      for (std::size_t r = 0; r < s.rods.size(); ++r) {
+        const Rod& rod = s.rods[r];
+        long double sum = 0;
+        for (Index k = 0; k < 3; ++k) {
+          const long double d = static_cast<long double>(q0[3 * rod.b + k]) - q0[3 * rod.a + k],
+                            u = static_cast<long double>(moved[3 * rod.b + k]) - moved[3 * rod.a + k];
+          sum += (2 * d + u) * u;
+        }
+        const auto exact = static_cast<double>(sum / (2.0L * rod.length));
+        CHECK(std::abs(phi(system.rod_rows()[r], c) - exact) <= 1e-15 * 1e-12 * 10 / rod.length);
+      }
+    }
+  }
+}
+
 }  // namespace system_stages_test

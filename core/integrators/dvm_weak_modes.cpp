@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Steps of Dvm next to singular poses, whose weak modes show what counts as round-off elsewhere.
+#include "core/integrators/dvm_method.hpp"
+
+namespace unfurl {
+
+// Is there a mode so weak that the errors which count as round-off elsewhere would show in the motion? Next
+// to a dead centre, where the motion is small and the constraints hold it by small angles.
+bool Dvm::needs_care() {
+  if (!frozen_ || eq_.phi.rows() == 0) return false;
+  const double motion = largest_magnitude(eq_.dX.data(), eq_.dX.size());
+  const double reach =
+      std::max(eq_.start_pose().lpNorm<Eigen::Infinity>(), system_.constraint_lengths().maxCoeff());
+  const double needed =
+      saddle_.motion_of_error() * constraint_noise(reach, reach) / std::max(harmless_ * motion, 1e-300);
+  needed_pivot_ = std::pow(std::min(needed, strong), 2);
+  if (needed > 1) {  // so small a motion that every error shows
+    saddle_.weakest_pivot(needed_pivot_);
+    return true;
+  }
+  return saddle_.weakest_pivot(needed_pivot_) < needed_pivot_;
+}
+
+// The constraints in increments, corrections from factors that see every mode, until the corrections are
+// nothing beside the motion: residuals do not tell, because a small one may be a large error of a weak mode.
+// What factors in doubles see of the weakest ones, e / sigma^2 or so, is the share that an iteration leaves
+// of them: such iterations are extrapolated, and where they get nowhere the factors are made in twice the
+// digits.
+bool Dvm::tight_iterations(const State& state, StepReport& report) {
+  constexpr int most = 40;
+  constexpr double slow = 0.05, digits = 1e-14, left_by_stall = 1e-8;
+  constexpr int steps_finely = 20;
+  const int patience = small_ ? 2 : 4;
+  eq_.take_rods_as_unknowns(false);
+  eq_.in_increments = true;
+  if (finely_ > 0 && --finely_ > 0 && !saddle_.fine() && !saddle_.factorise_finely()) finely_ = 0;
+  careful_ = !saddle_.fine();  // fine factors leave out by themselves what the rows cannot reach
+  feed_ = true;
+  weak_modes_.restart();
+  const double enough = std::max(std::numeric_limits<double>::epsilon(), nothing * harmless_);
+  double best = infinity, last = infinity;
+  int without_gain = 0;
+  bool done = false, good = false;
+  for (int it = 0; it <= most; ++it) {
+    eq_.evaluate();
+    report.residual = eq_.level();
+    if (done) good = report.residual <= accepted;
+    if (done || !std::isfinite(report.residual)) break;
+    ++report.newton_iterations;
+    correct(report);
+    const double size = largest_magnitude(rhs_f_.data(), eq_.dX.size()),
+                 motion = largest_magnitude(eq_.dX.data(), eq_.dX.size());
+    without_gain = size < 0.5 * best ? 0 : without_gain + 1;
+    best = std::min(best, size);
+    done = size <= enough * motion || without_gain >= patience;
+    if (done && best > left_by_stall * motion && !saddle_.fine() && saddle_.factorise_finely()) {
+      done = careful_ = false;
+      finely_ = steps_finely;
+      without_gain = 0;
+      weak_modes_.restart();
+    } else if (!done && size > std::max(slow * last, digits * motion)) {
+      const auto flat = [](auto& x, Index length) { return Eigen::Map<VectorXd>(x.data(), length); };
+      weak_modes_.extrapolate(flat(rhs_f_, eq_.dX.size()), flat(eq_.dX, eq_.dX.size()),
+                              flat(eq_.lambda, eq_.lambda.size()));
+    }
+    last = size;
+  }
+  eq_.in_increments = false;
+  if (good) {
+    report.status = StepStatus::converged;
+    return true;
+  }
+  tight_ = false;
+  predict(state, eq_.h);
+  freeze(eq_.start_pose(), report);
+  return false;
+}
+
+}  // namespace unfurl
