@@ -15,6 +15,7 @@
 #include "core/math/saddle_solver.hpp"
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/free_motion.hpp"
+#include "core/simulate/held_nodes.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/measured_event.hpp"
 #include "core/structure/time_edges.hpp"
@@ -155,6 +156,10 @@ class DrivenLocator {
     if (best.samples.empty()) return std::nullopt;
     DrivenDeployed out{polished(at(best.t, best.samples), best.samples), best.rough};
     out.error = std::max(out.error, move_free(out.state, best.samples));
+    if (out.state.t == edge_ && parts_.led) {
+      rests_(free_.coordinates()).setZero();
+      out.held = nodes_at_rest(model_, rests_, edge_, h_);
+    }
     DrivenStates before;
     finish(out.state, sample(out.state.t, best.apart, false, before) ? before : best.samples);
     return out;

@@ -190,8 +190,10 @@ std::optional<State> Stepper::Loop::locate_led(double guess, double h) {
     h = std::max(h, run_.trajectory.time(i) - run_.trajectory.time(i - 1));
   auto led = locate_driven(
       run_.trajectory, [this] { return fresh_integrator(); }, guess, h);
+  held_ = {};
   if (!led) return std::nullopt;
   led_off_ = led->error;
+  held_.nodes = std::move(led->held);
   return std::move(led->state);
 }
 
@@ -278,16 +280,17 @@ bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<Stat
       // Forces so near the pose are those of rounding: where nothing can happen on the way, it is gone at
       // once.
       const double edge = next_prescribed_edge(run_.trajectory);
-      if (!goes_on && !watched() && edge <= grid_.end()) event = locate_led(edge, h);
-      if (event && event->t == edge) return regular_ = false, true;
+      if (!watched() && edge <= grid_.end()) event = locate_led(edge, h);
+      if (event && event->t == edge && (!goes_on || !held_.nodes.empty())) return regular_ = false, true;
       event.reset();
     }
     if (regular || leads()) margin_ = stepping::deployed_already;
   }
   if (!arrives(to)) return false;
-  if (run_.options.at_deployed == "stop" && leads() && !regular_when_deployed(run_.trajectory, to.state)) {
+  if (leads() && !regular_when_deployed(run_.trajectory, to.state)) {
     event = locate_led(part_end_, h);
     if (!event) led_off_ = std::numeric_limits<double>::infinity();
+    if (goes_on && held_.nodes.empty()) event.reset();
   }
   regular_ = !event;
   if (event) return true;
@@ -300,6 +303,7 @@ bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<Stat
 // where the run ends.
 bool Stepper::Loop::find_deployed(Probe& to, double& h, std::optional<State>& event) {
   led_off_ = 0;
+  if (!deployed_) held_ = {};
   if (!to.report.ok() && may_cross(1.5 * h) && !leads()) event = locate(h, now().t + 1.05 * h);
   if (!event && !to.report.ok()) {
     to.state = now();
@@ -402,7 +406,7 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
                   "solver.at_deployed = \"stop\"");
     run_.warnings.push_back("at t = " + seconds(event.t) + ": the structure " + how);
   }
-  if (run_.options.at_deployed == "pass") {
+  if (run_.options.at_deployed == "pass" && held_.nodes.empty()) {
     if (!to.report.ok() || (!regular_ && std::abs(fold(to.state)) < margin_)) step_over(to, h);
     if (!to.report.ok()) step_from_far_off(to, h);
     if (watched() && to.report.ok())
@@ -418,7 +422,10 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
   regular_ = regular_ || regular_when_deployed(run_.trajectory, event);
   go_on(std::move(event), StepReport{.singular_event = !regular_});
   if (run_.options.at_deployed == "latch") return latch();
-  return run_.status = RunStatus::deployed, false;
+  if (run_.options.at_deployed == "stop") return run_.status = RunStatus::deployed, false;
+  hold_deployed();
+  if (holds_) enter_held();
+  return true;
 }
 
 // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
@@ -442,6 +449,7 @@ bool Stepper::Loop::latch() {
     return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
   base_ = latched_model(*base_, run_.options.eliminate_linear);
   latched_ = true;
+  if (!held_.nodes.empty()) hold_deployed();
   const Handover locked = hand_over(model(), now(), *base_);
   ModeChange change{.state = locked.state};
   if (!sides_.empty()) change = modes_after(change.state);

@@ -15,6 +15,7 @@
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/drift.hpp"
 #include "core/simulate/driven_deployed.hpp"
+#include "core/simulate/held_nodes.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/measured_event.hpp"
@@ -161,6 +162,7 @@ class Stepper::Loop {
       if (const std::vector<std::size_t> over = passed(); !over.empty()) return act(over);
     Probe to{.at = h, .state = now()};
     to.report = take_step(*integrator_, to.state, h);
+    if (gives_way(to)) return true;
     if (to.report.weak_end) settle_in_pose(to, h);
     std::optional<State> event;
     if (!find_deployed(to, h, event)) return false;
@@ -394,6 +396,7 @@ class Stepper::Loop {
   void forget();
   void archive_models(Archive& archive);
   void archive_states(Archive& archive);
+  void archive_held(Archive& archive);
 
   void model_changed() {
     integrator_ = fresh_integrator();
@@ -443,6 +446,10 @@ class Stepper::Loop {
   void tell_led_off(double t);
   bool deployed(State& event, Probe& to, double h);
   bool latch();
+  void hold_deployed();
+  void hold_nodes();
+  void enter_held();
+  bool gives_way(Probe& to);
   void step_over(Probe& to, double& h);
 
   Simulation& run_;
@@ -475,11 +482,12 @@ class Stepper::Loop {
   std::optional<Pushed> pushed_;
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
-  bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false;
+  bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false, holds_ = false;
   bool contradictions_ = false;                // told by a step's report
   double margin_ = stepping::singular_margin;  // a tenth of where the run began, if that is less
   const System* asked_ = nullptr;              // whose drives
   bool leads_ = false;                         // lead to the deployed pose
+  HeldNodes held_;                             // by drives, for good; holds_: by the base, too
   double led_off_ = 0;                         // by how much the state there may be off [m]
   VectorXd q_;
   std::size_t new_ = 0, part_ = 0;    // first state that was not handed over, first of the present part
