@@ -30,6 +30,8 @@ struct DrivenDeployed {
   double error = 0;  // how far it may be off, in a coordinate or, in a step, by a rate [m]
   // The nodes that drives hold there from then on: not in a pose that they lead through or away from.
   std::vector<int> held = {};
+  // Where they come to rest in it: states on the way there, as long as the trajectory ends where it does.
+  std::function<State(double t)> before = {};
 };
 std::optional<DrivenDeployed> locate_driven(const Trajectory& trajectory,
                                             const std::function<std::unique_ptr<Integrator>()>& fresh,

@@ -169,7 +169,8 @@ class Stepper::Loop {
     if (!event && (!to.report.ok() || to.report.weak_end)) step_over(to, h);
     if (watched() && (event || to.report.ok())) {
       Probe flat;
-      const bool short_of = event && (!to.report.ok() || event->t > now().t + to.at);
+      const bool short_of = event && (led_way_ || !to.report.ok() || event->t > now().t + to.at);
+      if (!event) led_way_ = nullptr;
       if (short_of) flat = beyond(to, *event);
       auto crossing = find_crossing(short_of ? flat : to, h);
       if (crossing && (!event || side(*crossing, *event, h) < 0)) return go_to(std::move(*crossing));
@@ -230,19 +231,7 @@ class Stepper::Loop {
     return false;
   }
 
-  // A drive's velocity jumps: what it drives is taken along by an impulse of the constraints.
-  bool jump(double t) {
-    // What the method's rates drift from what is held is no leaving and no impact.
-    State before = sides_.any_active() ? hand_over(model(), now(), model()).state : now();
-    drift(system(), before, t - before.t);
-    before.t = t;
-    if (sides_.empty()) return append_after_impulse(hand_over(model(), before, model()).state), true;
-    sides_.touch(system(), before);
-    ModeChange change = modes_after(hand_over(model(), before, *base_).state);
-    if (change.failure.empty() && !change.changed && change.impacts.empty())
-      return append_after_impulse(hand_over(*base_, change.state, model()).state), true;
-    return apply(change);
-  }
+  bool jump(double t);
 
   // --- steps ---
 
@@ -440,6 +429,8 @@ class Stepper::Loop {
   std::optional<Dip> dip_at_end(const Probe& to, double h);
   bool leads();
   std::optional<State> locate_led(double guess, double h);
+  bool goes_to_rest(double h, std::optional<State>& event);
+  bool strikes_nearby(const Probe& to);
   bool rests_deployed(const Probe& to, double h, std::optional<State>& event);
   bool find_deployed(Probe& to, double& h, std::optional<State>& event);
   double uneven(const State& event);
@@ -482,13 +473,15 @@ class Stepper::Loop {
   std::optional<Pushed> pushed_;
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
-  bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false, holds_ = false;
+  bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false, holds_ = false,
+       rest_ahead_ = false;
   bool contradictions_ = false;                // told by a step's report
   double margin_ = stepping::singular_margin;  // a tenth of where the run began, if that is less
   const System* asked_ = nullptr;              // whose drives
   bool leads_ = false;                         // lead to the deployed pose
   HeldNodes held_;                             // by drives, for good; holds_: by the base, too
-  double led_off_ = 0;                         // by how much the state there may be off [m]
+  std::function<State(double t)> led_way_;  // of the present step, to where drives come to rest in the pose
+  double led_off_ = 0;                      // by how much the state there may be off [m]
   VectorXd q_;
   std::size_t new_ = 0, part_ = 0;    // first state that was not handed over, first of the present part
   double last_step_ = 0, swing_ = 0;  // of the control of steps: where that begins anew, Stepper's
