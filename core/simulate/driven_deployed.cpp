@@ -15,6 +15,7 @@
 #include "core/math/saddle_solver.hpp"
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/free_motion.hpp"
+#include "core/simulate/held_nodes.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/measured_event.hpp"
 #include "core/structure/time_edges.hpp"
@@ -140,7 +141,7 @@ class DrivenLocator {
     go_ahead();
     VectorXd led = VectorXd::Ones(system_.solved_coordinates());
     led(free_.coordinates()).setZero();
-    Tried best;
+    Tried& best = best_;
     for (const double share : {1.0, 0.5, 0.25, 2.0, 3.0, 4.0, 6.0, 8.0, 0.125}) {
       Tried next{.apart = share * h_};
       const std::optional<double> t = around(next.apart, next.samples);
@@ -155,8 +156,20 @@ class DrivenLocator {
     if (best.samples.empty()) return std::nullopt;
     DrivenDeployed out{polished(at(best.t, best.samples), best.samples), best.rough};
     out.error = std::max(out.error, move_free(out.state, best.samples));
+    if (out.state.t == edge_ && parts_.led) {
+      rests_(free_.coordinates()).setZero();
+      out.held = nodes_at_rest(model_, rests_, edge_, h_);
+    }
     DrivenStates before;
     finish(out.state, sample(out.state.t, best.apart, false, before) ? before : best.samples);
+    return out;
+  }
+
+  double edge() const { return edge_; }
+  // On the way to the pose that was found.
+  State before(double t) {
+    State out = at(t, best_.samples);
+    move_free(out, best_.samples);
     return out;
   }
 
@@ -435,6 +448,7 @@ class DrivenLocator {
   std::vector<double> edges_;  // those of all that acts
   VectorXd rests_;             // 1 of coordinates whose drives are at rest at the edge
   bool pose_rests_ = false;    // so are all that lead there
+  Tried best_;
   std::vector<Tried> tried_;
   std::vector<State> ahead_;
   std::size_t first_;       // state of the run to go back to
@@ -474,7 +488,11 @@ bool drives_lead_to_deployed(const Trajectory& trajectory) {
 std::optional<DrivenDeployed> locate_driven(const Trajectory& trajectory,
                                             const std::function<std::unique_ptr<Integrator>()>& fresh,
                                             double guess, double h) {
-  return DrivenLocator(trajectory, fresh, guess, h).locate();
+  const auto locator = std::make_shared<DrivenLocator>(trajectory, fresh, guess, h);
+  std::optional<DrivenDeployed> out = locator->locate();
+  if (out && out->state.t == locator->edge())
+    out->before = [locator](double t) { return locator->before(t); };
+  return out;
 }
 
 }  // namespace unfurl

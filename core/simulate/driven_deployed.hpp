@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/trajectory.hpp"
@@ -27,6 +28,10 @@ double next_prescribed_edge(const Trajectory& trajectory);
 struct DrivenDeployed {
   State state;
   double error = 0;  // how far it may be off, in a coordinate or, in a step, by a rate [m]
+  // The nodes that drives hold there from then on: not in a pose that they lead through or away from.
+  std::vector<int> held = {};
+  // Where they come to rest in it: states on the way there, as long as the trajectory ends where it does.
+  std::function<State(double t)> before = {};
 };
 std::optional<DrivenDeployed> locate_driven(const Trajectory& trajectory,
                                             const std::function<std::unique_ptr<Integrator>()>& fresh,

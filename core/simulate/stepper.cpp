@@ -243,8 +243,8 @@ std::optional<Crossing> Stepper::Loop::find_crossing(Probe& to, double h) {
   };
   const Solve solve = [&](double length, Probe& probe) {
     probe.at = length;
-    probe.state = now();
-    probe.report = step(probe.state, length);
+    probe.state = led_way_ ? led_way_(now().t + length) : now();
+    probe.report = led_way_ ? StepReport{} : step(probe.state, length);
     if (!probe.report.ok() && deployment_.empty()) {  // too long for what swings faster, as a whole
       probe.state = now();
       if (at_its_end(model().structure, system().at(now()), now(), length).empty())
@@ -275,6 +275,20 @@ std::optional<Crossing> Stepper::Loop::find_crossing(Probe& to, double h) {
   const double of_time = jump_width * now().t / to.at;
   crossing->left = (stepping::located + of_time) * begin_.forces.cwiseMax(to.forces);
   return crossing;
+}
+
+// A drive's velocity jumps: what it drives is taken along by an impulse of the constraints.
+bool Stepper::Loop::jump(double t) {
+  // What the method's rates drift from what is held is no leaving and no impact.
+  State before = sides_.any_active() ? hand_over(model(), now(), model()).state : now();
+  drift(system(), before, t - before.t);
+  before.t = t;
+  if (sides_.empty()) return append_after_impulse(hand_over(model(), before, model()).state), true;
+  sides_.touch(system(), before);
+  ModeChange change = modes_after(hand_over(model(), before, *base_).state);
+  if (change.failure.empty() && !change.changed && change.impacts.empty())
+    return append_after_impulse(hand_over(*base_, change.state, model()).state), true;
+  return apply(change);
 }
 
 bool Stepper::Loop::go_to(Crossing crossing) {
@@ -315,15 +329,15 @@ MatrixXd Stepper::Loop::between(const Probe& to, bool cut_off) {
   bool own = true, differs = false;
   VectorXd z, w;
   for (int k = 1; k < stepping::parts; ++k) {
-    const double share = static_cast<double>(k) / stepping::parts;
-    p.state = on_cubic(now(), to.state, now().t + to.at * share);
-    if (own && (k == 2 || k == 5)) {
+    const double share = static_cast<double>(k) / stepping::parts, t = now().t + to.at * share;
+    p.state = led_way_ ? led_way_(t) : on_cubic(now(), to.state, t);
+    if (own && !led_way_ && (k == 2 || k == 5)) {
       own = integrator_->inside(now(), to.at, share, z, w);
       differs = differs || (own && (z - p.state.z).lpNorm<Eigen::Infinity>() > may_differ * way);
     }
     take(k - 1, 2 * k == stepping::parts);
   }
-  if (!own) {
+  if (!own && !led_way_) {
     const VectorXd even = 0.5 * to.at * (begin_.rates + to.rates);
     if (!cut_off) warn_of_long_step(to, to.margins - begin_.margins - even, fastest);
   } else if (differs && leaves_cubic(to, margins)) {

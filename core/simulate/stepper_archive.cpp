@@ -91,6 +91,7 @@ void Stepper::Loop::archive_models(Archive& archive) {
     base_ = sides_.lock_held(*base_, locked_at_);
   }
   if (archive.reading() && latched_) base_ = latched_model(*base_, run_.options.eliminate_linear);
+  archive_held(archive);
   sides_.archive(archive);
   if (!archive.reading() || !changed) return;
   present_ = sides_.any_active() ? sides_.model(*base_) : base_;

@@ -101,7 +101,7 @@ bool Stepper::Loop::edge_comes_first(Probe& to, double h, std::optional<State>& 
 // A step over the pose that another one ends short of; where none can be solved, to the pose.
 Probe Stepper::Loop::beyond(const Probe& to, const State& event) {
   const double way = event.t - now().t;
-  if (to.report.ok())
+  if (to.report.ok() && !led_way_)
     for (const double longer : {1.02, 1.1, 1.3}) {
       Probe past{.at = longer * way, .state = now()};
       if (now().t + past.at > next_edge()) break;
@@ -187,11 +187,17 @@ bool Stepper::Loop::leads() {
 std::optional<State> Stepper::Loop::locate_led(double guess, double h) {
   const std::size_t last = run_.trajectory.size() - 1;
   for (std::size_t i = last; i > 0 && i + 4 > last; --i)  // this step may be cut short
-    h = std::max(h, run_.trajectory.time(i) - run_.trajectory.time(i - 1));
+    if (const double before = run_.trajectory.time(i) - run_.trajectory.time(i - 1);
+        before < 2 * run_.options.step)  // or was none, but gone at once
+      h = std::max(h, before);
   auto led = locate_driven(
       run_.trajectory, [this] { return fresh_integrator(); }, guess, h);
+  held_ = {}, led_way_ = nullptr, rest_ahead_ = false;
   if (!led) return std::nullopt;
   led_off_ = led->error;
+  held_.nodes = std::move(led->held);
+  led_way_ = std::move(led->before);
+  rest_ahead_ = led_way_ && (run_.options.at_deployed != "pass" || !held_.nodes.empty());
   return std::move(led->state);
 }
 
@@ -269,25 +275,38 @@ std::optional<Dip> Stepper::Loop::dip_at_end(const Probe& to, double h) {
       model(), [this] { return fresh_integrator(); }, now(), behind, longer, rounded_);
 }
 
+// Does something change in a step so near the pose that those behind it would be of rounding?
+bool Stepper::Loop::strikes_nearby(const Probe& to) {
+  if (!watched() || fold(to.state) > stepping::singular_margin) return false;
+  Probe there;
+  sides_.measure(model(), to.state, true, there);
+  return there.margins.minCoeff() < -1;
+}
+
+// So near the pose steps, and what forces they have, are of rounding: where drives come to rest in it, it is
+// gone there at once.
+bool Stepper::Loop::goes_to_rest(double h, std::optional<State>& event) {
+  const double edge = next_prescribed_edge(run_.trajectory);
+  event.reset();
+  if (edge <= grid_.end()) event = locate_led(edge, h);
+  if (!rest_ahead_) event.reset();
+  regular_ = regular_ && !rest_ahead_;
+  return rest_ahead_;
+}
+
 // What a drive leads may come to rest in the deployed pose: near is not there.
 bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<State>& event) {
-  const bool goes_on = run_.options.at_deployed == "pass";
-  if (margin_ > rounded_ && crosses(to.state) && !system().drives().empty()) {
+  const bool nearby = (margin_ > rounded_ && crosses(to.state)) || strikes_nearby(to);
+  if (nearby && !system().drives().empty()) {
     const bool regular = regular_when_deployed(run_.trajectory, to.state);
-    if (!regular && leads()) {
-      // Forces so near the pose are those of rounding: where nothing can happen on the way, it is gone at
-      // once.
-      const double edge = next_prescribed_edge(run_.trajectory);
-      if (!goes_on && !watched() && edge <= grid_.end()) event = locate_led(edge, h);
-      if (event && event->t == edge) return regular_ = false, true;
-      event.reset();
-    }
+    if (!regular && leads() && goes_to_rest(h, event)) return true;
     if (regular || leads()) margin_ = stepping::deployed_already;
   }
   if (!arrives(to)) return false;
-  if (run_.options.at_deployed == "stop" && leads() && !regular_when_deployed(run_.trajectory, to.state)) {
+  if (leads() && !regular_when_deployed(run_.trajectory, to.state)) {
     event = locate_led(part_end_, h);
     if (!event) led_off_ = std::numeric_limits<double>::infinity();
+    if (run_.options.at_deployed == "pass" && held_.nodes.empty()) event.reset();
   }
   regular_ = !event;
   if (event) return true;
@@ -300,6 +319,8 @@ bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<Stat
 // where the run ends.
 bool Stepper::Loop::find_deployed(Probe& to, double& h, std::optional<State>& event) {
   led_off_ = 0;
+  if (!deployed_) held_ = {}, led_way_ = nullptr;
+  if (rest_ahead_ && !deployed_ && goes_to_rest(h, event)) return true;
   if (!to.report.ok() && may_cross(1.5 * h) && !leads()) event = locate(h, now().t + 1.05 * h);
   if (!event && !to.report.ok()) {
     to.state = now();
@@ -402,7 +423,7 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
                   "solver.at_deployed = \"stop\"");
     run_.warnings.push_back("at t = " + seconds(event.t) + ": the structure " + how);
   }
-  if (run_.options.at_deployed == "pass") {
+  if (run_.options.at_deployed == "pass" && held_.nodes.empty()) {
     if (!to.report.ok() || (!regular_ && std::abs(fold(to.state)) < margin_)) step_over(to, h);
     if (!to.report.ok()) step_from_far_off(to, h);
     if (watched() && to.report.ok())
@@ -418,7 +439,10 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
   regular_ = regular_ || regular_when_deployed(run_.trajectory, event);
   go_on(std::move(event), StepReport{.singular_event = !regular_});
   if (run_.options.at_deployed == "latch") return latch();
-  return run_.status = RunStatus::deployed, false;
+  if (run_.options.at_deployed == "stop") return run_.status = RunStatus::deployed, false;
+  hold_deployed();
+  if (holds_) enter_held();
+  return true;
 }
 
 // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
@@ -442,6 +466,7 @@ bool Stepper::Loop::latch() {
     return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
   base_ = latched_model(*base_, run_.options.eliminate_linear);
   latched_ = true;
+  if (!held_.nodes.empty()) hold_deployed();
   const Handover locked = hand_over(model(), now(), *base_);
   ModeChange change{.state = locked.state};
   if (!sides_.empty()) change = modes_after(change.state);

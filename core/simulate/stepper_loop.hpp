@@ -15,6 +15,7 @@
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/drift.hpp"
 #include "core/simulate/driven_deployed.hpp"
+#include "core/simulate/held_nodes.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
 #include "core/simulate/measured_event.hpp"
@@ -161,13 +162,15 @@ class Stepper::Loop {
       if (const std::vector<std::size_t> over = passed(); !over.empty()) return act(over);
     Probe to{.at = h, .state = now()};
     to.report = take_step(*integrator_, to.state, h);
+    if (gives_way(to)) return true;
     if (to.report.weak_end) settle_in_pose(to, h);
     std::optional<State> event;
     if (!find_deployed(to, h, event)) return false;
     if (!event && (!to.report.ok() || to.report.weak_end)) step_over(to, h);
     if (watched() && (event || to.report.ok())) {
       Probe flat;
-      const bool short_of = event && (!to.report.ok() || event->t > now().t + to.at);
+      const bool short_of = event && (led_way_ || !to.report.ok() || event->t > now().t + to.at);
+      if (!event) led_way_ = nullptr;
       if (short_of) flat = beyond(to, *event);
       auto crossing = find_crossing(short_of ? flat : to, h);
       if (crossing && (!event || side(*crossing, *event, h) < 0)) return go_to(std::move(*crossing));
@@ -228,19 +231,7 @@ class Stepper::Loop {
     return false;
   }
 
-  // A drive's velocity jumps: what it drives is taken along by an impulse of the constraints.
-  bool jump(double t) {
-    // What the method's rates drift from what is held is no leaving and no impact.
-    State before = sides_.any_active() ? hand_over(model(), now(), model()).state : now();
-    drift(system(), before, t - before.t);
-    before.t = t;
-    if (sides_.empty()) return append_after_impulse(hand_over(model(), before, model()).state), true;
-    sides_.touch(system(), before);
-    ModeChange change = modes_after(hand_over(model(), before, *base_).state);
-    if (change.failure.empty() && !change.changed && change.impacts.empty())
-      return append_after_impulse(hand_over(*base_, change.state, model()).state), true;
-    return apply(change);
-  }
+  bool jump(double t);
 
   // --- steps ---
 
@@ -394,6 +385,7 @@ class Stepper::Loop {
   void forget();
   void archive_models(Archive& archive);
   void archive_states(Archive& archive);
+  void archive_held(Archive& archive);
 
   void model_changed() {
     integrator_ = fresh_integrator();
@@ -437,12 +429,18 @@ class Stepper::Loop {
   std::optional<Dip> dip_at_end(const Probe& to, double h);
   bool leads();
   std::optional<State> locate_led(double guess, double h);
+  bool goes_to_rest(double h, std::optional<State>& event);
+  bool strikes_nearby(const Probe& to);
   bool rests_deployed(const Probe& to, double h, std::optional<State>& event);
   bool find_deployed(Probe& to, double& h, std::optional<State>& event);
   double uneven(const State& event);
   void tell_led_off(double t);
   bool deployed(State& event, Probe& to, double h);
   bool latch();
+  void hold_deployed();
+  void hold_nodes();
+  void enter_held();
+  bool gives_way(Probe& to);
   void step_over(Probe& to, double& h);
 
   Simulation& run_;
@@ -475,12 +473,15 @@ class Stepper::Loop {
   std::optional<Pushed> pushed_;
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
-  bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false;
+  bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false, holds_ = false,
+       rest_ahead_ = false;
   bool contradictions_ = false;                // told by a step's report
   double margin_ = stepping::singular_margin;  // a tenth of where the run began, if that is less
   const System* asked_ = nullptr;              // whose drives
   bool leads_ = false;                         // lead to the deployed pose
-  double led_off_ = 0;                         // by how much the state there may be off [m]
+  HeldNodes held_;                             // by drives, for good; holds_: by the base, too
+  std::function<State(double t)> led_way_;  // of the present step, to where drives come to rest in the pose
+  double led_off_ = 0;                      // by how much the state there may be off [m]
   VectorXd q_;
   std::size_t new_ = 0, part_ = 0;    // first state that was not handed over, first of the present part
   double last_step_ = 0, swing_ = 0;  // of the control of steps: where that begins anew, Stepper's

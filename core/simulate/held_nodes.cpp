@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/simulate/held_nodes.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/structure/time_edges.hpp"
+
+namespace unfurl {
+
+std::vector<int> nodes_at_rest(const Model& model, const VectorXd& resting, double t, double h) {
+  const auto& [structure, system] = model;
+  const std::vector<int> sources = system.sources();
+  const SparseRows rows = system.jacobian_pattern();
+  Structure of_them;
+  for (int r = 0; r < rows.outerSize(); ++r) {
+    bool any = false;
+    for (SparseRows::InnerIterator it(rows, r); it; ++it) any = any || resting[it.col()] > 0;
+    const int source = sources[static_cast<std::size_t>(r)];
+    if (any && source < 0) of_them.rods = structure.rods;  // that are warmed
+    if (any && source >= 0)
+      of_them.constraints.push_back(structure.constraints[static_cast<std::size_t>(source)]);
+  }
+  const std::vector<TimeEdge> edges = prescribed_edges(of_them, h);
+  if (edge_after(edges, t) != edges.end()) return {};
+  VectorXd any(resting.size()), moves(system.coordinates()), others(moves.size());
+  for (Index k = 0; k < any.size(); ++k) any[k] = std::sin(1.0 + static_cast<double>(k));
+  system.expand_rate(any, moves);
+  system.expand_rate(any.cwiseProduct(VectorXd::Ones(any.size()) - resting), others);
+  std::vector<int> out;
+  for (int i = 0; i < static_cast<int>(structure.nodes.size()); ++i)
+    if (moves.segment<3>(3 * i).any() && !others.segment<3>(3 * i).any()) out.push_back(i);
+  return out;
+}
+
+std::shared_ptr<const Model> model_with_held(const Model& model, const HeldNodes& held,
+                                             bool eliminate_linear) {
+  Structure structure = model.structure;
+  Index at = 0;
+  for (const int node : held.nodes)
+    for (int k = 0; k < 3; ++k) {
+      const std::string name = "hold of " + structure.nodes[static_cast<std::size_t>(node)].name;
+      structure.constraints.push_back({"plane", name, {node}, {Vec3::Unit(k)}, held.places[at++], {}, {}});
+    }
+  System system(structure, eliminate_linear);
+  return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
+}
+
+}  // namespace unfurl

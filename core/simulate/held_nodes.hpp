@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/simulate/trajectory.hpp"
+
+namespace unfurl {
+
+// Nodes that drives hold which have come to rest, in a pose whose constraints alone do not hold them: they
+// have lost rank there.
+struct HeldNodes {
+  std::vector<int> nodes;
+  VectorXd places;  // x, y and z of each
+};
+
+// The nodes that only those solved coordinates move which are 1 of `resting`, where nothing that is
+// prescribed of these changes behind the time t, in steps of h.
+std::vector<int> nodes_at_rest(const Model& model, const VectorXd& resting, double t, double h);
+
+// The model with nodes held in their places.
+std::shared_ptr<const Model> model_with_held(const Model& model, const HeldNodes& held,
+                                             bool eliminate_linear);
+
+}  // namespace unfurl
