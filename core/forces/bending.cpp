@@ -8,8 +8,6 @@
 namespace unfurl {
 namespace {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 
 // (1 - c) / (1 + c) and its derivatives by (d_1, d_2). From s = t_2 - t_1, which keeps its digits where

@@ -12,6 +12,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
 using ConstVec = Eigen::Ref<const VectorXd>;
 using MutVec = Eigen::Ref<VectorXd>;
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;

@@ -111,6 +111,7 @@ std::vector<std::string> place_nodes(const Scene& scene, Structure& structure) {
   add_elements(placing(scene.constraints, scene_constraints(), false), scene_constraints(),
                scene.solver.end_time, ends_deployed(scene), placed);
   warm_braces(placed);
+  bend_to_ends(placed, false, false);
   placed.notes.clear();
   try {
     fit_lengths(placed, scene.solver.eliminate_linear);

@@ -7,50 +7,17 @@
 #include <limits>
 
 #include "core/math/twofold.hpp"
+#include "core/structure/angle_sides.hpp"
 #include "core/structure/course.hpp"
 #include "core/structure/dihedral.hpp"
 
 namespace unfurl {
 namespace {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
-
 Mat3 cross_matrix(const Vec3& a) {
   Mat3 m;
   m << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
   return m;
-}
-
-// From derivatives by (d_1, d_2) to those by the nodes: d_1 = x_1 - x_0, d_2 = x_3 - x_2, or of six nodes,
-// where x_1 and x_4 are the first ones within a rod that bends (structures/segments.hpp), its tangent at x_0,
-//     d_1 = 2 (x_1 - x_0) - (x_4 - x_0) / 2,     d_2 = 2 (x_3 - x_2) - (x_5 - x_2) / 2
-// of a line that is straight x_4 is x_1, or x_5 is x_3.
-using Shares = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, 6>;
-Shares shares(Index nodes) {
-  Shares out(2, nodes);
-  if (nodes == 4)
-    out << -1, 1, 0, 0, 0, 0, -1, 1;
-  else
-    out << -1.5, 2, 0, 0, -0.5, 0, 0, 0, -1.5, 2, 0, -0.5;
-  return out;
-}
-
-void spread(const Vec6& g, Eigen::Ref<VectorXd> out) {
-  const Shares share = shares(out.size() / 3);
-  for (Index i = 0; i < share.cols(); ++i)
-    out.segment<3>(3 * i) = share(0, i) * g.head<3>() + share(1, i) * g.tail<3>();
-}
-
-void spread(const Mat6& h, Eigen::Ref<MatrixXd> out) {
-  const Shares share = shares(out.rows() / 3);
-  for (Index i = 0; i < share.cols(); ++i)
-    for (Index j = 0; j < share.cols(); ++j) {
-      out.block<3, 3>(3 * i, 3 * j).setZero();
-      for (Index a = 0; a < 2; ++a)
-        for (Index b = 0; b < 2; ++b)
-          out.block<3, 3>(3 * i, 3 * j) += share(a, i) * share(b, j) * h.block<3, 3>(3 * a, 3 * b);
-    }
 }
 
 // Hessian of atan2(s, c): with r^2 = s^2 + c^2
@@ -237,16 +204,18 @@ void MeasureFunction::turn_in_line(const double* q, const double* v, double scal
     term.turn_in_line(q, v, scale * c, gradient + first);
   });
   if (kind_ != MeasureKind::angle || turns_) return;
-  const Vec3 d1 = edge(q, 0), d2 = edge(q, 2);
+  const AngleSides sides(q, stencil_);
+  const Vec3 &d1 = sides.d1(), &d2 = sides.d2();
   const double c = d1.dot(d2);
   if (!in_line(d1.cross(d2).norm(), c)) return;
-  const Vec3 v1 = edge(v, 0), v2 = edge(v, 2), turning = d1.cross(v2) + v1.cross(d2);
+  const Vec6 rate = sides.rate(v);
+  const Vec3 v1 = rate.head<3>(), v2 = rate.tail<3>(), turning = d1.cross(v2) + v1.cross(d2);
   const double size = turning.norm(), most = d1.norm() * v2.norm() + v1.norm() * d2.norm();
   if (!(size > rounding * most && size > rest * std::abs(c))) return;
   const Vec3 n = -turning / size;
   Vec6 ds;
   ds << d2.cross(n), n.cross(d1);
-  spread(Vec6(scale / c * ds), Eigen::Map<VectorXd>(gradient, std::ssize(stencil_)));
+  sides.gradient(scale / c * ds, Eigen::Map<VectorXd>(gradient, std::ssize(stencil_)));
 }
 
 void MeasureFunction::add_hessian(const double* q, double scale,
@@ -281,38 +250,36 @@ double MeasureFunction::linear(const VectorXd& coefficients, double offset, cons
   return sum;
 }
 
-Vec3 MeasureFunction::edge(const double* q, std::size_t from) const {
-  const auto to = [&](std::size_t node) -> Vec3 {
-    const int a = stencil_[3 * from], b = stencil_[3 * node];
-    return {q[b] - q[a], q[b + 1] - q[a + 1], q[b + 2] - q[a + 2]};
-  };
-  return stencil_.size() == 18 ? Vec3(2 * to(from + 1) - 0.5 * to(4 + from / 2)) : to(from + 1);
+Vec3 MeasureFunction::edge(const double* q) const {
+  const int a = stencil_[0], b = stencil_[3];
+  return {q[b] - q[a], q[b + 1] - q[a + 1], q[b + 2] - q[a + 2]};
 }
 
-// s and c of the angle and their first derivatives by (d_1, d_2).
+// s and c of the angle, their first derivatives by (d_1, d_2) and those of the angle.
 struct MeasureFunction::Angle {
-  Vec3 d1, d2;
+  AngleSides sides;
   double s, c;
   Vec6 ds, dc;
+
+  Vec6 gradient() const { return (c * ds - s * dc) / (s * s + c * c); }
 };
 
 MeasureFunction::Angle MeasureFunction::angle_terms(const double* q) const {
-  Angle a;
-  a.d1 = edge(q, 0);
-  a.d2 = edge(q, 2);
-  const Vec3 normal = a.d1.cross(a.d2);
+  Angle a{AngleSides(q, stencil_), 0, 0, Vec6::Zero(), Vec6::Zero()};
+  const Vec3 &d1 = a.sides.d1(), &d2 = a.sides.d2();
+  const Vec3 normal = d1.cross(d2);
   if (axis_.isZero(0.0)) {
     a.s = normal.norm();
-    a.c = a.d1.dot(a.d2);
-    a.dc << a.d2, a.d1;
+    a.c = d1.dot(d2);
+    a.dc << d2, d1;
     const Vec3 n = in_line(a.s, a.c) ? Vec3::Zero() : Vec3(normal / a.s);
-    a.ds << a.d2.cross(n), n.cross(a.d1);
+    a.ds << d2.cross(n), n.cross(d1);
   } else {
-    const double h1 = axis_.dot(a.d1), h2 = axis_.dot(a.d2);
+    const double h1 = axis_.dot(d1), h2 = axis_.dot(d2);
     a.s = axis_.dot(normal);
-    a.c = a.d1.dot(a.d2) - h1 * h2;
-    a.ds << a.d2.cross(axis_), axis_.cross(a.d1);
-    a.dc << a.d2 - h2 * axis_, a.d1 - h1 * axis_;
+    a.c = d1.dot(d2) - h1 * h2;
+    a.ds << d2.cross(axis_), axis_.cross(d1);
+    a.dc << d2 - h2 * axis_, d1 - h1 * axis_;
   }
   return a;
 }
@@ -327,7 +294,7 @@ double MeasureFunction::value_and_gradient(const double* q, double* gradient, do
     return linear(sine_, 0.0, q);
   }
   if (kind_ == MeasureKind::length) {
-    const Vec3 d = edge(q, 0);
+    const Vec3 d = edge(q);
     const double length = d.norm();
     const Vec3 unit = length > 0 ? Vec3(d / length) : Vec3::Zero();
     g << -unit, unit;
@@ -339,8 +306,7 @@ double MeasureFunction::value_and_gradient(const double* q, double* gradient, do
     return on_branch(std::atan2(s, c), near);
   }
   const Angle a = angle_terms(q);
-  const double square = a.s * a.s + a.c * a.c;
-  spread(Vec6((a.c * a.ds - a.s * a.dc) / square), g);
+  a.sides.gradient(a.gradient(), g);
   return axis_.isZero(0.0) ? std::atan2(a.s, a.c) : on_branch(std::atan2(a.s, a.c), near);
 }
 
@@ -390,7 +356,7 @@ double MeasureFunction::curvature_along(const double* q, const double* v) const 
     case MeasureKind::coordinate:
       return 0.0;
     case MeasureKind::length: {
-      const Vec3 d = edge(q, 0), rate = edge(v, 0);
+      const Vec3 d = edge(q), rate = edge(v);
       const Course square = dot(d, rate, d, rate);
       return square.value > 0 ? root(square).second : 0.0;
     }
@@ -412,13 +378,18 @@ double MeasureFunction::curvature_along(const double* q, const double* v) const 
 }
 
 double MeasureFunction::angle_curvature(const double* q, const double* v) const {
-  const Vec3 d1 = edge(q, 0), d2 = edge(q, 2), v1 = edge(v, 0), v2 = edge(v, 2);
-  const Vec3 n = d1.cross(d2), n1 = d1.cross(v2) + v1.cross(d2), n2 = 2 * v1.cross(v2);
-  const Course c = dot(d1, v1, d2, v2);
+  const AngleSides sides(q, stencil_);
+  const Vec6 rate = sides.rate(v), second = sides.second_rate(v);
+  const Vec3 &d1 = sides.d1(), &d2 = sides.d2();
+  const Vec3 v1 = rate.head<3>(), v2 = rate.tail<3>(), a1 = second.head<3>(), a2 = second.tail<3>();
+  const Vec3 n = d1.cross(d2), n1 = d1.cross(v2) + v1.cross(d2),
+             n2 = 2 * v1.cross(v2) + (d1.cross(a2) + a1.cross(d2));
+  Course c = dot(d1, v1, d2, v2);
+  c.second += d1.dot(a2) + a1.dot(d2);
   if (!axis_.isZero(0.0)) {
-    const double h1 = axis_.dot(d1), h2 = axis_.dot(d2), r1 = axis_.dot(v1), r2 = axis_.dot(v2);
-    return second_of_angle({axis_.dot(n), axis_.dot(n1), axis_.dot(n2)},
-                           c - Course{h1 * h2, h1 * r2 + r1 * h2, 2 * r1 * r2});
+    const Course h1{axis_.dot(d1), axis_.dot(v1), axis_.dot(a1)};
+    const Course h2{axis_.dot(d2), axis_.dot(v2), axis_.dot(a2)};
+    return second_of_angle({axis_.dot(n), axis_.dot(n1), axis_.dot(n2)}, c - h1 * h2);
   }
   const double s = n.norm();
   if (in_line(s, c.value)) return second_of_angle({s, 0, 0}, c);
@@ -445,6 +416,7 @@ void MeasureFunction::fold_hessian(const double* q, double* hess) const {
 
 void MeasureFunction::angle_hessian(const double* q, double* hess) const {
   const Angle a = angle_terms(q);
+  const Vec3 &d1 = a.sides.d1(), &d2 = a.sides.d2();
   const double square = a.s * a.s + a.c * a.c;
   Mat6 hs = Mat6::Zero(), hc = Mat6::Zero();
   if (axis_.isZero(0.0)) {
@@ -452,10 +424,10 @@ void MeasureFunction::angle_hessian(const double* q, double* hess) const {
     const Mat3 unit = Mat3::Identity();
     const double c = a.c;
     hc << Mat3::Zero(), unit, unit, Mat3::Zero();
-    const Mat3 h12 = 2 * a.d1 * a.d2.transpose() - a.d2 * a.d1.transpose() - c * unit;
+    const Mat3 h12 = 2 * d1 * d2.transpose() - d2 * d1.transpose() - c * unit;
     if (!in_line(a.s, c)) {
-      hs << a.d2.squaredNorm() * unit - a.d2 * a.d2.transpose(), h12, h12.transpose(),
-          a.d1.squaredNorm() * unit - a.d1 * a.d1.transpose();
+      hs << d2.squaredNorm() * unit - d2 * d2.transpose(), h12, h12.transpose(),
+          d1.squaredNorm() * unit - d1 * d1.transpose();
       hs = ((hs - a.ds * a.ds.transpose()) / a.s).eval();
     }
   } else {
@@ -465,7 +437,8 @@ void MeasureFunction::angle_hessian(const double* q, double* hess) const {
   }
   const Mat6 linear_part = (a.c * hs - a.s * hc) / square;
   const auto size = static_cast<Index>(stencil_.size());
-  spread(Mat6(atan2_hessian(a.s, a.c, a.ds, a.dc, linear_part)), Eigen::Map<MatrixXd>(hess, size, size));
+  a.sides.hessian(a.gradient(), atan2_hessian(a.s, a.c, a.ds, a.dc, linear_part),
+                  Eigen::Map<MatrixXd>(hess, size, size));
 }
 
 }  // namespace unfurl

@@ -13,7 +13,7 @@ namespace unfurl {
 
 //   coordinate  s = axis . x_0                             or, with two nodes, axis . (x_1 - x_0)   [m]
 //   length      s = |x_1 - x_0|                                                                     [m]
-//   angle       from d_1 = x_1 - x_0 to d_2 = x_3 - x_2; of six nodes of tangents (measure.cpp)     [rad]
+//   angle       from d_1 = x_1 - x_0 to d_2 = x_3 - x_2; of six nodes of tangents (angle_sides.hpp)    [rad]
 //                 axis = 0: unsigned, in [0, pi]; its gradient is undefined at 0 and pi (taken as 0 there)
 //                 axis a: atan2(a . (d_1 x d_2), d_1 . d_2 - (a . d_1)(a . d_2)), of the projections across
 //                 a, on the branch within pi of `near`: the value of a moment ago
@@ -70,7 +70,7 @@ class MeasureFunction {
   void fold_hessian(const double* q, double* hess) const;
   void combination_hessian(const double* q, double* hess) const;
   double angle_curvature(const double* q, const double* v) const;
-  Vec3 edge(const double* q, std::size_t from) const;  // from that of its nodes to the next
+  Vec3 edge(const double* q) const;  // of a length
   double linear(const VectorXd& coefficients, double offset, const double* q) const;
   template <class Each>
   void each_term(const Each& each) const;

@@ -16,8 +16,8 @@ namespace unfurl {
 void cut_rods(Structure& structure, const std::vector<long>& segments);
 
 // A rod bends at the nodes within it, each for half a part on either side; the half parts at its ends are
-// left out, as pins leave no moment there. Where an angle of six nodes (measure.cpp) acts on a rod's end, it
-// takes the tangent of a rod that bends there as it does at the first node, from that on back to the end:
+// left out, as pins leave no moment there. Where an angle of six nodes (angle_sides.hpp) acts on a rod's end,
+// it takes the tangent of a rod that bends there as it does at the first node, from that on back to the end:
 // with 1.5 of the parts to bend the stiffness there is that much larger, and deflections are right to the
 // second order in 1/k. What is measured only, how far a structure is deployed that is not locked there, makes
 // nothing stiffer. Friction by the force of a pin needs the first part's own direction: where a structure

@@ -38,11 +38,11 @@ int furthest_off(const Structure& structure) {
   return worst;
 }
 
-// Rods and constraints alone, rods that give as cold as those who join them: warmth acts on the rods as they
-// stand then, whether they fit or not.
+// Rods and constraints alone, what bends among them, rods that give as cold as those who join them: warmth
+// acts on the rods as they stand then, whether they fit or not.
 Structure unloaded(const Structure& structure) {
   Structure bare = structure;
-  bare.forces.clear();
+  std::erase_if(bare.forces, [](const Force& force) { return force.kind != "bending"; });
   bare.loads.clear();
   bare.gravity.setZero();
   for (Rod& rod : bare.rods) {
@@ -56,7 +56,7 @@ Structure unloaded(const Structure& structure) {
 // modulus is. Rods with a free_length stay out of it. True where there is such a pose near q.
 bool fits_without_force(const Structure& structure, bool eliminate_linear, VectorXd& q) {
   constexpr double near = 0.2;  // of the longest rod, as of rigid rods (fit_lengths.cpp)
-  Structure rigid = unloaded(structure);
+  Structure rigid = kept_straight(unloaded(structure), true);
   double longest = 0;
   for (Rod& rod : rigid.rods) {
     longest = std::max(longest, rod.length);
@@ -298,7 +298,7 @@ void assemble_elastic(Structure& structure, bool eliminate_linear) {
     throw StructureError(key, off.str() +
                                   "; nodes are moved for differences up to 1 % only: give positions "
                                   "that fit, or free_length for a rod that starts stretched");
-  const System system(unloaded(structure), eliminate_linear);
+  const System system(kept_straight(unloaded(structure), false), eliminate_linear);
   const VectorXd given = node_positions(structure);
   VectorXd q = given;
   const bool fits = fits_without_force(structure, eliminate_linear, q);

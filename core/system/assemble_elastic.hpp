@@ -8,9 +8,10 @@ namespace unfurl {
 
 // Moves the nodes to where the rods that give are in balance among themselves, without loads, gravity and
 // springs, while rigid rods and constraints hold: what a person does who joins rods that do not quite fit.
-// Where all lengths fit without force (solve_for_pose, fit_lengths.hpp), that is all; else they go on from
-// where they fit best with the mechanism held. With r the forces of these rods and K their derivatives,
-// Newton's steps
+// Where all lengths fit without force (solve_for_pose, fit_lengths.hpp), rods that were cut to bend straight
+// as they are, that is all; else they go on from where they fit best with the mechanism held, straight but
+// for rods that constraints of angles or of their inner nodes may bend. With r the forces of these rods and K
+// their derivatives, Newton's steps
 //
 //     [ K + e M   G^T ] [ dz     ]   [  r   ]
 //     [ G          0  ] [ lambda ] = [ -Phi ]

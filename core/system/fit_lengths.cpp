@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "core/math/saddle_solver.hpp"
@@ -85,6 +86,36 @@ bool solve_for_pose(const System& system, VectorXd& q) {
   return false;
 }
 
+Structure kept_straight(const Structure& structure, bool all) {
+  std::set<int> held;
+  for (const Constraint& c : structure.constraints) {
+    if (c.kind == "plane") continue;
+    held.insert(c.nodes.begin(), c.nodes.end());
+    held.insert(c.measure.nodes.begin(), c.measure.nodes.end());
+    for (const MeasureTerm& term : c.measure.terms)
+      held.insert(term.measure.nodes.begin(), term.measure.nodes.end());
+  }
+  Structure out = structure;
+  const auto& rods = structure.rods;
+  for (std::size_t first = 0; first < rods.size(); first += static_cast<std::size_t>(rods[first].parts)) {
+    const auto parts = static_cast<std::size_t>(rods[first].parts);
+    const int a = rods[first].a, b = rods[first + parts - 1].b;
+    const auto is_held = [&](const Rod& part) { return part.b != b && held.count(part.b) > 0; };
+    const auto from = rods.begin() + static_cast<std::ptrdiff_t>(first);
+    if (!all && std::any_of(from, from + static_cast<std::ptrdiff_t>(parts), is_held)) continue;
+    for (std::size_t k = 1; k < parts; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(parts);
+      for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 e = Vec3::Unit(axis);
+        const Rod& part = rods[first + k - 1];
+        out.constraints.push_back(
+            {"relation", "straight rod " + part.whole, {part.b, a, b}, {e, (share - 1) * e, -share * e}});
+      }
+    }
+  }
+  return out;
+}
+
 void fit_lengths(Structure& structure, bool eliminate_linear) {
   if (std::all_of(structure.rods.begin(), structure.rods.end(), [](const Rod& rod) { return rod.gives; }))
     return;
@@ -97,10 +128,12 @@ void fit_lengths(Structure& structure, bool eliminate_linear) {
                          said_of(structure, rod, " are ") +
                              "; nodes are moved for differences up to 1 % only: give positions that fit, or "
                              "leave the length out");
-  const System system(structure, eliminate_linear);
   const VectorXd given = node_positions(structure);
   VectorXd q = given;
-  const bool solved = solve_for_pose(system, q);
+  const Structure straight = kept_straight(structure, true);
+  bool solved = solve_for_pose(System(straight, eliminate_linear), q);
+  if (!solved && straight.constraints.size() > structure.constraints.size())
+    q = given, solved = solve_for_pose(System(structure, eliminate_linear), q);
   double most = 0;
   std::size_t mover = 0;
   Structure moved = structure;

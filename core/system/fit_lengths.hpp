@@ -28,4 +28,9 @@ void fit_lengths(Structure& structure, bool eliminate_linear);
 // empty: none were.
 std::string note_of_moved_nodes(const Structure& structure);
 
+// The same with the nodes within rods that were cut to bend (structures/segments.hpp) in proportion on the
+// line between their ends: what moves these leaves such a rod straight, and without a moment. all: also rods
+// that constraints of angles or of their inner nodes may bend.
+Structure kept_straight(const Structure& structure, bool all);
+
 }  // namespace unfurl

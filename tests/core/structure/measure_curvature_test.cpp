@@ -28,6 +28,7 @@ std::vector<Measure> one_of_each() {
                            of_nodes(MeasureKind::angle, {1, 0, 1, 4}, axis),
                            of_nodes(MeasureKind::angle, {0, 1, 2, 3, 4, 3}),
                            of_nodes(MeasureKind::angle, {0, 1, 2, 3, 4, 0}, axis),
+                           of_nodes(MeasureKind::angle, {0, 1, 2, 3, 4, 0}),
                            of_nodes(MeasureKind::fold, {}),
                            of_nodes(MeasureKind::dihedral, {0, 1, 2, 3})};
   Measure sum;
@@ -81,18 +82,38 @@ TEST_CASE("the curvature of a measure along a line is that of its Hessian") {
     }
 }
 
-// The tangents of parabolas through their first two equal parts, at which they begin: of x_0 + a u + b u^2
-// the direction a. What is straight has its own.
-TEST_CASE("an angle of six nodes is that of the tangents") {
-  const Vec3 a(0.7, -0.3, 0.5), b(0.2, 0.4, -0.1), c(-0.4, 0.6, 0.3), d(0.3, 0.1, 0.25), from(0.1, 0.9, -0.6);
-  VectorXd q(18), there(12);
-  q << from, from + a + b, from + d, from + d + c - 0.5 * b, from + 2 * a + 4 * b, from + d + 2 * c - 2 * b;
-  there << from, from + a, from + d, from + d + c;
-  const Vec3 axis = Vec3(1, -2, 0.5).normalized();
-  for (const Vec3& about : {Vec3(Vec3::Zero()), axis}) {
-    const MeasureFunction six(of_nodes(MeasureKind::angle, {0, 1, 2, 3, 4, 5}, about), {}),
-        four(of_nodes(MeasureKind::angle, {0, 1, 2, 3}, about), {});
-    CHECK(six.value(q.data()) == Approx(four.value(there.data())).epsilon(1e-14));
+// Of two lines of parts the angle between what is drawn back from each: of 3/2 t_1 - 1/2 t_2. How long the
+// parts are changes nothing, and so what acts on it has no component along any of them.
+TEST_CASE("an angle of six nodes is that of the tangents and pulls along no part") {
+  const Vec3 t1 = Vec3(0.7, -0.3, 0.5).normalized(), t2 = Vec3(0.8, 0.2, 0.4).normalized(),
+             s1 = Vec3(-0.4, 0.6, 0.3).normalized(), s2 = Vec3(-0.6, 0.7, -0.1).normalized(),
+             one(0.1, 0.9, -0.6), two(0.4, 1.0, -0.35);
+  VectorXd there(12);
+  there << one, one + 1.5 * t1 - 0.5 * t2, two, two + 1.5 * s1 - 0.5 * s2;
+  for (const Vec3& about : {Vec3(Vec3::Zero()), Vec3(Vec3(1, -2, 0.5).normalized())})
+    for (const double longer : {1.0, 1.7}) {
+      VectorXd q(18), g(18);
+      q << one, one + longer * t1, two, two + 0.3 * s1, one + longer * t1 + 0.9 * t2,
+          two + 0.3 * s1 + longer * s2;
+      const MeasureFunction six(of_nodes(MeasureKind::angle, {0, 1, 2, 3, 4, 5}, about), {}),
+          four(of_nodes(MeasureKind::angle, {0, 1, 2, 3}, about), {});
+      CHECK(six.value_and_gradient(q.data(), g.data()) == Approx(four.value(there.data())).epsilon(1e-14));
+      const auto pull = [&g](int node) -> Vec3 { return g.segment<3>(3 * node); };
+      for (const double along : {pull(0).dot(t1), pull(4).dot(t2), pull(2).dot(s1), pull(5).dot(s2)})
+        CHECK(std::abs(along) <= 1e-15 * g.lpNorm<1>());
+      CHECK((pull(0) + pull(1) + pull(4)).norm() <= 1e-15 * g.lpNorm<1>());
+    }
+}
+
+// The chords of two equal arcs of a circle turn by the bend b from one to the next, and by b / 2 from its
+// tangent to the first: what is drawn back from them, atan(sin b / (3 - cos b)), is b / 2 less b^3 / 4.
+TEST_CASE("the tangent of a rod that bends is that of a circle to the third order") {
+  for (const double b : {0.4, 0.2, 0.1}) {
+    VectorXd q(12);
+    q << Vec3::Zero(), std::cos(b / 2), std::sin(b / 2), 0, 1, 0, 0, std::cos(b / 2) + std::cos(1.5 * b),
+        std::sin(b / 2) + std::sin(1.5 * b), 0;
+    const MeasureFunction angle(of_nodes(MeasureKind::angle, {0, 1, 0, 2, 3, 2}, Vec3(0, 0, -1)), {});
+    CHECK(angle.value(q.data()) == Approx(b * b * b / 4).epsilon(b * b));
   }
 }
 
