@@ -178,6 +178,7 @@ void keep_states(std::size_t states, Simulation& run, Diagnostics& d) {
   for (Series& column : d.columns) column.values.resize(states);
   d.axial_force.conservativeResize(static_cast<Index>(states), Eigen::NoChange);
   d.force_unique.conservativeResize(static_cast<Index>(states), Eigen::NoChange);
+  std::erase_if(d.found, [&](const FoundWithin& x) { return x.peak.t > run.trajectory.end_time(); });
   std::erase_if(run.events, [&](const Event& event) { return event.t > run.trajectory.end_time(); });
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <string_view>
 
 #include "core/diagnostics/state_forces.hpp"
 #include "core/math/lagrange.hpp"
@@ -76,6 +77,15 @@ PeakInMotion by_states(const Simulation& run, const std::vector<double>& x, cons
   }
   // They say that what was found is too much; a polynomial that goes beyond it swings.
   return top.value <= found.value ? top : found;
+}
+
+PeakInMotion beyond(const Diagnostics& diagnostics, std::string_view column, bool largest,
+                    PeakInMotion seen) {
+  const double sign = largest ? 1.0 : -1.0;
+  for (const FoundWithin& known : diagnostics.found)
+    if (known.column == column && known.largest == largest && !(sign * known.peak.value <= sign * seen.value))
+      seen = known.peak;
+  return seen;
 }
 
 }  // namespace unfurl

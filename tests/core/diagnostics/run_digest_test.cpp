@@ -428,4 +428,48 @@ TEST_CASE("what a long run that is cut says of forces without bound is of what i
   }
 }
 
+// A rigid winch that has wound its load up to the pulley, after 2.908 s, leads nowhere: its states are 341 J
+// off at once, and between two of them the polynomial reaches a thousand times that, which no energy was
+// turned over in. The load, 9.81 N over 2 m, was the energy of the motion until then.
+TEST_CASE("what a long run reaches within steps of a lost motion does not make it trusted") {
+  const Scene scene = read_scene_text(R"([structure]
+kind = 'custom'
+nodes = [{name = 'O', position = [0, 0, 2], fixed = true}, {name = 'B', position = [0, 0, 0], mass = 1}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[[constraints]]
+kind = 'line'
+nodes = ['B']
+direction = [0, 0, 1]
+[[forces]]
+kind = 'winch'
+name = 'w'
+nodes = ['B', 'O']
+stall_torque = 3
+no_load_speed = 600
+drum_radius = 0.1
+inertia = 0.01
+axial_stiffness = 0
+[solver]
+step = 0.01
+stages = 4
+end_time = 6
+)",
+                                      "s.toml", {});
+  const auto model = build_model(scene);
+  Simulation run = simulate(model, scene.solver);
+  const Diagnostics judged = judge(run);
+  REQUIRE(run.status == RunStatus::failed);
+  for (const std::size_t states : {60UL, 150UL, 250UL, 290UL}) {
+    INFO(states);
+    Windows w = windows_of(scene, states);
+    const Digest whole = from_checkpoint_to_checkpoint(w, model, scene);
+    CHECK(whole.run.status == RunStatus::failed);
+    CHECK(whole.run.trajectory.end_time() == Approx(run.trajectory.end_time()).epsilon(0).margin(1e-9));
+    CHECK(energy_turned_over(whole.diagnostics) == Approx(energy_turned_over(judged)));
+    CHECK(find_measure("peak_energy").value(whole.run, whole.diagnostics) ==
+          Approx(find_measure("peak_energy").value(run, judged)));
+  }
+}
+
 }  // namespace run_digest_test
