@@ -82,9 +82,12 @@ PeakInMotion by_states(const Simulation& run, const std::vector<double>& x, cons
 PeakInMotion beyond(const Diagnostics& diagnostics, std::string_view column, bool largest,
                     PeakInMotion seen) {
   const double sign = largest ? 1.0 : -1.0;
-  for (const FoundWithin& known : diagnostics.found)
-    if (known.column == column && known.largest == largest && !(sign * known.peak.value <= sign * seen.value))
-      seen = known.peak;
+  for (const auto& [name, most, known, forces] : diagnostics.found) {
+    if (name != column || most != largest) continue;
+    const PeakInMotion rise = seen.bounded ? known : seen;
+    if (!(sign * known.value <= sign * seen.value)) seen = known;
+    if (!rise.bounded) seen.bounded = false, seen.rise_t = rise.rise_t;
+  }
   return seen;
 }
 

@@ -67,6 +67,10 @@ double fastest(const Trajectory& trajectory, std::size_t i) {
   return most;
 }
 
+double reach(const Trajectory& trajectory, std::size_t i) {
+  return trajectory.node_positions(i).lpNorm<Eigen::Infinity>();
+}
+
 // Rows at which a rod bears most, of all rods and of those whose force is not unique.
 void add_rods(const Structure& structure, const Diagnostics& d, std::set<std::size_t>& rows) {
   using Size = double (*)(const Rod&, double);
@@ -293,7 +297,7 @@ Digest RunDigest::thinned(const Digest& all) const {
       rows.insert(row);
       if (!looked_for(column.name, largest) || !worth_a_look(all, column, largest ? 1.0 : -1.0)) continue;
       const PeakInMotion top = extreme_of_column(all.run, d, column.name, largest);
-      if (std::isfinite(top.value) && top.value != column.values[row])
+      if (std::isfinite(top.value) && (top.value != column.values[row] || !top.bounded))
         note(out.diagnostics, {column.name, largest, top, rod_forces(all.run, d, top.t)});
     }
   for (std::size_t i = 0; i < trajectory.size(); ++i)
@@ -301,7 +305,10 @@ Digest RunDigest::thinned(const Digest& all) const {
   if (const std::size_t first = first_unstretched(all.run, d); first < d.t.size()) rows.insert(first);
   add_rods(trajectory.structure(), d, rows);
   add_rise(d.at("energy_balance_J").values, rows);
-  for (const StateSize size : {turning_rate, stretch_share})
+  // Of what the books of later windows may be off by: the largest so far.
+  const std::vector<double> stopped = energy_of_stopped_waves(all.run);
+  rows.insert(static_cast<std::size_t>(std::ranges::max_element(stopped) - stopped.begin()));
+  for (const StateSize size : {turning_rate, stretch_share, reach})
     rows.insert(largest_of_states(trajectory, size).second);
   const auto [speed, quickest] = largest_of_states(trajectory, fastest);
   rows.insert(quickest);
@@ -321,7 +328,8 @@ Digest RunDigest::thinned(const Digest& all) const {
     State state = in_coordinates(trajectory.model(i).system, trajectory.state(i), model_->system);
     const bool same_rows = trajectory.model(i).system.rod_rows() == model_->system.rod_rows();
     if (!without_forces(trajectory, i) || !same_rows) state.lambda.resize(0);
-    state.tension.resize(0), state.tension_error.resize(0);
+    if (trajectory.model(i).system.giving_rods() != model_->system.giving_rods()) state.tension.resize(0);
+    state.tension_error.resize(0);
     state.stage_tension.resize(0, 0);
     out.run.trajectory.append(std::move(state), StepReport{.singular_event = true});
     if (const VectorXd* u = trajectory.stretch(i))
@@ -400,7 +408,7 @@ void RunDigest::archive_digest(Archive& archive, Digest& digest) const {
     State state;
     if (!archive.reading()) state = digest.run.trajectory.state(i);
     archive(state.t);
-    for (VectorXd* x : {&state.z, &state.w, &state.lambda, &state.angles}) archive(*x);
+    for (VectorXd* x : {&state.z, &state.w, &state.lambda, &state.tension, &state.angles}) archive(*x);
     VectorXd u;
     if (const VectorXd* shown = archive.reading() ? nullptr : digest.run.trajectory.stretch(i)) u = *shown;
     archive(u);
