@@ -112,12 +112,6 @@ double deployed_at(const Simulation& run) {
 
 }  // namespace
 
-std::string GoodPart::text(const Diagnostics& d) const {
-  std::ostringstream out;
-  if (states < d.t.size() - d.left_open) out << "from t = " << d.t[states] << " s on " << why;
-  return out.str();
-}
-
 GoodPart good_part(const Simulation& run, const Diagnostics& d) {
   const std::size_t judged = d.t.size() - d.left_open;
   const Series &balance = d.at("energy_balance_J"), &stretch = d.at("constraint_relative_max");
@@ -134,8 +128,11 @@ GoodPart good_part(const Simulation& run, const Diagnostics& d) {
   std::ostringstream why;
   why.precision(3);
   BalanceError error(damps(run));
-  const double even_until = driven_evenly(run.trajectory.structure()) ? deployed_at(run) : -1;
+  double even_until = deployed_at(run);
+  const Model* model = nullptr;  // forces of a controller are loads of the states that bear them
   for (std::size_t i = 0; i < judged; ++i) {
+    if (const Model* now = &run.trajectory.model(i); std::exchange(model, now) != now)
+      even_until = driven_evenly(now->structure) ? even_until : -1;
     if (!finite(run, d, i)) {
       if (part.states == i) why << "the state is not finite any more";
       break;
@@ -172,15 +169,6 @@ GoodPart good_part(const Simulation& run, const Diagnostics& d) {
   return part;
 }
 
-void keep_states(std::size_t states, Simulation& run, Diagnostics& d) {
-  while (run.trajectory.size() > states) run.trajectory.pop_back();
-  d.t.resize(states);
-  for (Series& column : d.columns) column.values.resize(states);
-  d.axial_force.conservativeResize(static_cast<Index>(states), Eigen::NoChange);
-  d.force_unique.conservativeResize(static_cast<Index>(states), Eigen::NoChange);
-  std::erase_if(run.events, [&](const Event& event) { return event.t > run.trajectory.end_time(); });
-}
-
 namespace {
 
 std::string percent_of(double part, double whole) {
@@ -215,12 +203,6 @@ double energy_turned_over(const Diagnostics& d) {
   EnergyTurnedOver turned;
   for (std::size_t i = 0; i < d.t.size() - d.left_open; ++i) add_state(columns, i, turned);
   return turned.value();
-}
-
-void fail_for(const std::string& why, Simulation& run) {
-  run.message =
-      (run.status == RunStatus::failed ? run.message + "; " : "") + why + ": what follows is left out";
-  run.status = RunStatus::failed;
 }
 
 Diagnostics judge(Simulation& run, const std::function<bool()>& cancelled, const KnownAhead& ahead) {

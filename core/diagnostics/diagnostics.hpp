@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,24 @@ struct Series {
   std::vector<double> values;
 };
 
+struct PeakInMotion {
+  double value = std::numeric_limits<double>::quiet_NaN();  // NaN: there is none
+  double t = std::numeric_limits<double>::quiet_NaN();      // [s], of a state or within a step
+  // False: it rises towards a time beside rise_t as 1 / (time left), as forces do where a singular pose is
+  // passed; where that is the largest yet, the value is that of the nearest pose that was looked at, at
+  // rise_t.
+  bool bounded = true;
+  double rise_t = std::numeric_limits<double>::quiet_NaN();  // [s]
+};
+
+// What was found within a step of a run of which only some states are left (run_digest.hpp).
+struct FoundWithin {
+  std::string column;  // or "peak_speed"
+  bool largest = true;
+  PeakInMotion peak = {};
+  VectorXd rod_forces = {};  // [N] then, of rods' columns
+};
+
 struct Diagnostics {
   std::vector<double> t;        // [s], one entry per state
   std::vector<Series> columns;  // in the table's order; each as long as t
@@ -33,6 +52,7 @@ struct Diagnostics {
   std::vector<char> rod_unique;  // per rod of the solved model: at every pose that is not singular
   // The same: whether it is shown. Largest and smallest forces are those of such rods; empty: all are.
   std::vector<char> rod_shown;
+  std::vector<FoundWithin> found = {};              // larger, or smaller, than what any state has
   const Series* find(std::string_view name) const;  // nullptr where the scene has no such column
   const Series& at(std::string_view name) const;    // throws std::out_of_range
   // Whether what is unique was looked for; else the columns that would say it are NaN.

@@ -94,7 +94,7 @@ std::vector<double> speeds(const Simulation& run) {
 
 double peak_speed(const Simulation& run, const Diagnostics& d) {
   if (d.left_open > 0) return no_value;
-  return largest_in_motion(run, speeds(run), speeds);
+  return beyond(d, "peak_speed", true, top_of_motion(run, speeds(run), speeds)).value;
 }
 
 const std::array measure_table{

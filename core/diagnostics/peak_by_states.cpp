@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <string_view>
 
 #include "core/diagnostics/state_forces.hpp"
 #include "core/math/lagrange.hpp"
@@ -76,6 +77,18 @@ PeakInMotion by_states(const Simulation& run, const std::vector<double>& x, cons
   }
   // They say that what was found is too much; a polynomial that goes beyond it swings.
   return top.value <= found.value ? top : found;
+}
+
+PeakInMotion beyond(const Diagnostics& diagnostics, std::string_view column, bool largest,
+                    PeakInMotion seen) {
+  const double sign = largest ? 1.0 : -1.0;
+  for (const auto& [name, most, known, forces] : diagnostics.found) {
+    if (name != column || most != largest) continue;
+    const PeakInMotion rise = seen.bounded ? known : seen;
+    if (!(sign * known.value <= sign * seen.value)) seen = known;
+    if (!rise.bounded) seen.bounded = false, seen.rise_t = rise.rise_t;
+  }
+  return seen;
 }
 
 }  // namespace unfurl

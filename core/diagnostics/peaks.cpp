@@ -474,11 +474,15 @@ RememberedExtremes::~RememberedExtremes() {
 PeakInMotion extreme_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column,
                                bool largest) {
   if (diagnostics.left_open > 0) return {};  // it may lie in what was not judged
-  if (!remembered) return looked_for_extreme(run, diagnostics, column, largest ? 1.0 : -1.0);
+  const auto look = [&] {
+    return beyond(diagnostics, column, largest,
+                  looked_for_extreme(run, diagnostics, column, largest ? 1.0 : -1.0));
+  };
+  if (!remembered) return look();
   const std::tuple key(&diagnostics, std::string(column), largest);
   if (const auto known = remembered->found_.find(key); known != remembered->found_.end())
     return known->second;
-  return remembered->found_[key] = looked_for_extreme(run, diagnostics, column, largest ? 1.0 : -1.0);
+  return remembered->found_[key] = look();
 }
 
 double largest_of_column(const Simulation& run, const Diagnostics& diagnostics, std::string_view column) {

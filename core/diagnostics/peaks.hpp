@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,16 +17,6 @@ namespace unfurl {
 // One value per state of a run: a function of the state alone, not of what went before.
 using StateValues = std::function<std::vector<double>(const Simulation&)>;
 
-struct PeakInMotion {
-  double value = std::numeric_limits<double>::quiet_NaN();  // NaN: there is none
-  double t = std::numeric_limits<double>::quiet_NaN();      // [s], of a state or within a step
-  // False: it rises towards a time beside rise_t as 1 / (time left), as forces do where a singular pose is
-  // passed; where that is the largest yet, the value is that of the nearest pose that was looked at, at
-  // rise_t.
-  bool bounded = true;
-  double rise_t = std::numeric_limits<double>::quiet_NaN();  // [s]
-};
-
 // The largest value over the motion. `at_states`: the values at the run's own states, NaN where there is
 // none. Around the largest of them and others that may top it `values` is asked at a few times within the
 // steps, closer and closer: of the quintic through positions, velocities and accelerations, or of the run's
@@ -38,6 +27,9 @@ PeakInMotion top_of_motion(const Simulation& run, const std::vector<double>& at_
                            const StateValues& values, const std::vector<std::size_t>& also = {});
 double largest_in_motion(const Simulation& run, const std::vector<double>& at_states,
                          const StateValues& values);
+
+// Of what was looked for and what a digest has found before: the larger, or smaller.
+PeakInMotion beyond(const Diagnostics& diagnostics, std::string_view column, bool largest, PeakInMotion seen);
 
 // Largest and smallest value of a column of series.csv over the motion. Columns that are sums over the run's
 // steps (energies that went in or out, errors, counts) are taken at the states, but for NAME.energy_J of

@@ -25,7 +25,9 @@ Bearer bearer(const Simulation& run, const Diagnostics& d, double t,
               const std::function<double(Index rod, double force)>& size) {
   Bearer found;
   if (d.t.size() != run.trajectory.size()) return found;
-  const VectorXd forces = rod_forces_within_step(run, t);
+  VectorXd forces = rod_forces_within_step(run, t);
+  for (const FoundWithin& found_before : d.found)
+    if (forces.size() == 0 && found_before.peak.t == t) forces = found_before.rod_forces;
   for (Index r = 0; r < forces.size(); ++r)
     if (d.shows(r) && !std::isnan(size(r, forces[r])) &&
         (found.rod < 0 || size(r, forces[r]) > size(found.rod, found.force_N)))

@@ -67,6 +67,10 @@ double fastest(const Trajectory& trajectory, std::size_t i) {
   return most;
 }
 
+double reach(const Trajectory& trajectory, std::size_t i) {
+  return trajectory.node_positions(i).lpNorm<Eigen::Infinity>();
+}
+
 // Rows at which a rod bears most, of all rods and of those whose force is not unique.
 void add_rods(const Structure& structure, const Diagnostics& d, std::set<std::size_t>& rows) {
   using Size = double (*)(const Rod&, double);
@@ -91,21 +95,19 @@ void add_rods(const Structure& structure, const Diagnostics& d, std::set<std::si
     }
 }
 
-// The largest tension and compression of the motion, and the rows that are to hold them: those of the states
-// with the largest.
-template <typename Worth>
-std::vector<std::pair<std::size_t, PeakForce>> peaks_of_rods(const Simulation& run, const Diagnostics& d,
-                                                             const Worth& worth_a_look) {
-  std::vector<std::pair<std::size_t, PeakForce>> out;
-  for (const auto& [pull, column, sign] : {std::tuple{Pull::tension, "axial_force_max_N", 1.0},
-                                           {Pull::compression, "axial_force_min_N", -1.0}}) {
-    const Series& forces = d.at(column);
-    const std::size_t row = row_of_largest(forces.values, sign);
-    const PeakForce peak =
-        worth_a_look(forces, sign) ? peak_rod_force(run, d, pull) : peak_rod_force(d, pull);
-    if (row < d.t.size() && peak.rod >= 0) out.emplace_back(row, peak);
-  }
-  return out;
+// In place of what was found of that column before.
+void note(Diagnostics& d, FoundWithin found) {
+  std::erase_if(d.found,
+                [&](const FoundWithin& x) { return x.column == found.column && x.largest == found.largest; });
+  d.found.push_back(std::move(found));
+}
+
+// What rods bear at a time within a step of a run or of what was left of it before.
+VectorXd rod_forces(const Simulation& run, const Diagnostics& d, double t) {
+  VectorXd forces = rod_forces_within_step(run, t);
+  for (const FoundWithin& x : d.found)
+    if (forces.size() == 0 && x.peak.t == t) forces = x.rod_forces;
+  return forces;
 }
 
 // The lowest value before the largest rise, and where that ends.
@@ -182,7 +184,7 @@ Diagnostics RunDigest::add(Simulation& window, std::size_t first, std::size_t la
 }
 
 // Between the last state before the window and its first new one the motion may go beyond all that the digest
-// has. That is then put at the last state that is kept. False: it does not.
+// has. That is then noted. False: it does not.
 bool RunDigest::look_at_seam(const Simulation& window, const Diagnostics& d, std::size_t first,
                              std::size_t end) {
   const std::size_t begin = first - std::min<std::size_t>(first, 2);
@@ -197,32 +199,22 @@ bool RunDigest::look_at_seam(const Simulation& window, const Diagnostics& d, std
     x.erase(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(begin));
     for (const double sign : {1.0, -1.0}) {
       if (!looked_for(d.columns[c].name, sign > 0)) continue;
+      const std::string& name = d.columns[c].name;
       const std::vector<double>& all = all_.diagnostics.columns[c].values;
       const std::size_t row = row_of_largest(all, sign);
-      if (row == all.size() || !may_top(x, sign, sign * all[row])) continue;
-      const double top = sign > 0 ? largest_of_column(seam, rows, d.columns[c].name)
-                                  : smallest_of_column(seam, rows, d.columns[c].name);
-      if (!(sign * top > sign * all[row])) continue;
-      kept_.diagnostics.columns[c].values.back() = top;
+      if (row == all.size()) continue;
+      const double most = beyond(all_.diagnostics, name, sign > 0, {all[row]}).value;
+      if (!may_top(x, sign, sign * most)) continue;
+      const PeakInMotion top = extreme_of_column(seam, rows, name, sign > 0);
+      if (!(sign * top.value > sign * most)) continue;
+      note(kept_.diagnostics, {name, sign > 0, top, rod_forces(seam, rows, top.t)});
       found = true;
     }
   }
-  const RunMeasure peak_speed = find_measure("peak_speed");
-  const double top = peak_speed.value(seam, d);
-  double most = 0;
-  for (std::size_t i = 0; i < all_.run.trajectory.size(); ++i)
-    most = std::max(most, fastest(all_.run.trajectory, i));
-  Trajectory& kept = kept_.run.trajectory;
-  const double speed = fastest(kept, kept.size() - 1);
-  if (!(top > most && speed > 0)) return found;
-  const std::size_t at = kept.size() - 1;
-  State state = kept.state(at);
-  state.w *= top / speed;
-  const VectorXd* const shown = kept.stretch(at);
-  const VectorXd u = shown ? *shown : VectorXd();
-  kept.pop_back();
-  kept.append(std::move(state), StepReport{.singular_event = true});
-  if (u.size() > 0) kept.add_stretch(at, u);
+  const auto [speed, quickest] = largest_of_states(all_.run.trajectory, fastest);
+  const double top = find_measure("peak_speed").value(seam, d);
+  if (!(top > beyond(all_.diagnostics, "peak_speed", true, {speed}).value)) return found;
+  note(kept_.diagnostics, {"peak_speed", true, {top, seam.trajectory.time(0)}});
   return true;
 }
 
@@ -282,56 +274,50 @@ bool RunDigest::worth_a_look(const Digest& all, const Series& column, double sig
   const std::size_t known = std::min(kept_.diagnostics.t.size(), t.size());
   const std::span<const double> x(column.values);
   const std::size_t row = row_of_largest(x.first(known), sign);
-  return row == known || may_top(x.subspan(known), sign, sign * x[row]) ||
+  return row == known ||
+         may_top(x.subspan(known), sign,
+                 sign * beyond(kept_.diagnostics, column.name, sign > 0, {x[row]}).value) ||
          std::ranges::any_of(
              all.run.events,
              [&](const Event& event) { return event.kind == "singular_pose" && event.t >= t[known - 1]; }) ||
          !rod_humps(all.run.trajectory, all.diagnostics, column.name, sign).empty();
 }
 
-// In the coordinates of the model at the start; nothing is looked for around these states any more. What was
-// found beside the last state stands at the one before: the last is the end of what a digest says.
+// In the coordinates of the model at the start; nothing is looked for around these states any more.
 Digest RunDigest::thinned(const Digest& all) const {
   const Trajectory& trajectory = all.run.trajectory;
   const Diagnostics& d = all.diagnostics;
-  const std::size_t last = d.t.size() - 1;
-  std::set<std::size_t> rows{0, last};
-  const auto row_for = [&](std::size_t row, bool of_state) {
-    if (row == last && !of_state && last > 0) --row;
-    rows.insert(row);
-    return row;
-  };
-  std::vector<std::pair<std::size_t, double>>
-      found[2];  // row and value of every column, largest and smallest
+  std::set<std::size_t> rows{0, d.t.size() - 1};
+  Digest out = empty();
+  out.diagnostics.found = d.found;
   for (const Series& column : d.columns)
     for (const bool largest : {true, false}) {
-      std::size_t row = row_of_largest(column.values, largest ? 1.0 : -1.0);
-      double value = row < column.values.size() ? column.values[row] : 0.0;
-      if (row < column.values.size() && looked_for(column.name, largest) &&
-          worth_a_look(all, column, largest ? 1.0 : -1.0)) {
-        const double x = largest ? largest_of_column(all.run, d, column.name)
-                                 : smallest_of_column(all.run, d, column.name);
-        if (std::isfinite(x)) value = x;
-      }
-      if (row < column.values.size()) row = row_for(row, value == column.values[row]);
-      found[largest ? 0 : 1].emplace_back(row, value);
+      const std::size_t row = row_of_largest(column.values, largest ? 1.0 : -1.0);
+      if (row == column.values.size()) continue;
+      rows.insert(row);
+      if (!looked_for(column.name, largest) || !worth_a_look(all, column, largest ? 1.0 : -1.0)) continue;
+      const PeakInMotion top = extreme_of_column(all.run, d, column.name, largest);
+      if (std::isfinite(top.value) && (top.value != column.values[row] || !top.bounded))
+        note(out.diagnostics, {column.name, largest, top, rod_forces(all.run, d, top.t)});
     }
-  auto peaks = peaks_of_rods(
-      all.run, d, [&](const Series& forces, double sign) { return worth_a_look(all, forces, sign); });
-  for (auto& [row, peak] : peaks)
-    row = row_for(row, peak.force_N == d.axial_force(static_cast<Index>(row), peak.rod));
   for (std::size_t i = 0; i < trajectory.size(); ++i)
     if (without_forces(trajectory, i)) rows.insert(i);
   if (const std::size_t first = first_unstretched(all.run, d); first < d.t.size()) rows.insert(first);
   add_rods(trajectory.structure(), d, rows);
   add_rise(d.at("energy_balance_J").values, rows);
-  for (const StateSize size : {turning_rate, stretch_share})
+  // Of what the books of later windows may be off by: the largest so far.
+  const std::vector<double> stopped = energy_of_stopped_waves(all.run);
+  rows.insert(static_cast<std::size_t>(std::ranges::max_element(stopped) - stopped.begin()));
+  for (const StateSize size : {turning_rate, stretch_share, reach})
     rows.insert(largest_of_states(trajectory, size).second);
-  auto [speed, quickest] = largest_of_states(trajectory, fastest);
-  const double top = find_measure("peak_speed").value(all.run, d);
-  quickest = row_for(quickest, !(top > speed));
-  speed = fastest(trajectory, quickest);
-  Digest out = empty();
+  const auto [speed, quickest] = largest_of_states(trajectory, fastest);
+  rows.insert(quickest);
+  if (const double top = find_measure("peak_speed").value(all.run, d); top > speed)
+    note(out.diagnostics, {"peak_speed", true, {top, trajectory.time(quickest)}});
+  for (const FoundWithin& x : out.diagnostics.found) {
+    const std::size_t before = trajectory.state_before(x.peak.t);
+    rows.insert({before, std::min(before + 1, d.t.size() - 1)});
+  }
   out.run.events = all.run.events;
   out.diagnostics.columns = d.columns;
   for (Series& column : out.diagnostics.columns) column.values.clear();
@@ -340,28 +326,19 @@ Digest RunDigest::thinned(const Digest& all) const {
   out.diagnostics.force_unique.resize(static_cast<Index>(rows.size()), d.force_unique.cols());
   for (Index to = 0; const std::size_t i : rows) {
     State state = in_coordinates(trajectory.model(i).system, trajectory.state(i), model_->system);
-    if (i == quickest && speed > 0 && std::isfinite(top)) state.w *= top / speed;
     const bool same_rows = trajectory.model(i).system.rod_rows() == model_->system.rod_rows();
     if (!without_forces(trajectory, i) || !same_rows) state.lambda.resize(0);
-    state.tension.resize(0), state.tension_error.resize(0);
+    if (trajectory.model(i).system.giving_rods() != model_->system.giving_rods()) state.tension.resize(0);
+    state.tension_error.resize(0);
     state.stage_tension.resize(0, 0);
     out.run.trajectory.append(std::move(state), StepReport{.singular_event = true});
     if (const VectorXd* u = trajectory.stretch(i))
       out.run.trajectory.add_stretch(out.run.trajectory.size() - 1, *u);
     out.diagnostics.t.push_back(d.t[i]);
-    for (std::size_t c = 0; c < d.columns.size(); ++c) {
-      double value = d.columns[c].values[i];
-      for (const auto& extremes : found)
-        if (extremes[c].first == i) value = extremes[c].second;
-      out.diagnostics.columns[c].values.push_back(value);
-    }
+    for (std::size_t c = 0; c < d.columns.size(); ++c)
+      out.diagnostics.columns[c].values.push_back(d.columns[c].values[i]);
     out.diagnostics.axial_force.row(to) = d.axial_force.row(static_cast<Index>(i));
     out.diagnostics.force_unique.row(to) = d.force_unique.row(static_cast<Index>(i));
-    for (const auto& [row, peak] : peaks)
-      if (row == i) {
-        out.diagnostics.axial_force(to, peak.rod) = peak.force_N;
-        out.diagnostics.force_unique(to, peak.rod) = peak.unique;
-      }
     ++to;
   }
   return out;
@@ -431,7 +408,7 @@ void RunDigest::archive_digest(Archive& archive, Digest& digest) const {
     State state;
     if (!archive.reading()) state = digest.run.trajectory.state(i);
     archive(state.t);
-    for (VectorXd* x : {&state.z, &state.w, &state.lambda, &state.angles}) archive(*x);
+    for (VectorXd* x : {&state.z, &state.w, &state.lambda, &state.tension, &state.angles}) archive(*x);
     VectorXd u;
     if (const VectorXd* shown = archive.reading() ? nullptr : digest.run.trajectory.stretch(i)) u = *shown;
     archive(u);
@@ -450,6 +427,17 @@ void RunDigest::archive_digest(Archive& archive, Digest& digest) const {
   archive(d.axial_force);
   archive(d.force_unique);
   archive(d.rod_unique);
+  std::size_t found = d.found.size();
+  archive(found);
+  if (found > archive.bytes().size()) throw ArchiveError("ends too early");
+  d.found.resize(found);
+  for (FoundWithin& x : d.found) {
+    archive(x.column);
+    archive(x.largest);
+    for (double* number : {&x.peak.value, &x.peak.t, &x.peak.rise_t}) archive(*number);
+    archive(x.peak.bounded);
+    archive(x.rod_forces);
+  }
   d.rod_shown = shown_rods(model_->structure);
   archive_events(archive, digest.run.events);
 }

@@ -14,8 +14,8 @@
 namespace unfurl {
 
 // Some states of a run with their rows, as if they were all of it: its first state, those at which a column
-// or a rod's force is largest or smallest, the last ones. What was found larger within a step stands at the
-// nearest state in its place.
+// or a rod's force is largest or smallest, those around what was found beyond that within a step
+// (Diagnostics::found), the last ones.
 struct Digest {
   Simulation run;
   Diagnostics diagnostics;
