@@ -78,6 +78,7 @@ class Dvm final : public Integrator {
     frozen_ = false;
     weak_rows_ = -1;
     slow_ = stiff_ = false;
+    finely_ = 0;
     settling_.restart();
     newton_.forget();
     eq_.restart();

@@ -21,12 +21,13 @@ AngleSides::AngleSides(const double* q, const std::vector<int>& stencil)
     Side& side = sides_[static_cast<std::size_t>(s)];
     if (!bends()) {
       side.d = part(q, s, 0);
-      side.by = {-Mat3::Identity(), Mat3::Identity()};
+      side.by[0] = -Mat3::Identity(), side.by[1] = Mat3::Identity();
       continue;
     }
     const UnitVector one(part(q, s, 0)), two(part(q, s, 1));
     side.d = share[0] * one.t + share[1] * two.t;
-    side.by = {-share[0] * one.first, share[0] * one.first - share[1] * two.first, share[1] * two.first};
+    side.by[0] = -share[0] * one.first, side.by[2] = share[1] * two.first;
+    side.by[1] = -side.by[0] - side.by[2];
   }
 }
 
