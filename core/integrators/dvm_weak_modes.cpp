@@ -24,8 +24,8 @@ bool Dvm::needs_care() {
 // The constraints in increments, corrections from factors that see every mode, until the corrections are
 // nothing beside the motion: residuals do not tell, because a small one may be a large error of a weak mode.
 // What factors in doubles see of the weakest ones, e / sigma^2 or so, is the share that an iteration leaves
-// of them: such iterations are extrapolated, and where they get nowhere the factors are made in twice the
-// digits.
+// of them: in large systems, where that is what makes an iteration slow, it is extrapolated, and where that
+// gets nowhere the factors are made in twice the digits.
 bool Dvm::tight_iterations(const State& state, StepReport& report) {
   constexpr int most = 40;
   constexpr double slow = 0.05, digits = 1e-14, left_by_stall = 1e-8;
@@ -53,12 +53,12 @@ bool Dvm::tight_iterations(const State& state, StepReport& report) {
     without_gain = size < 0.5 * best ? 0 : without_gain + 1;
     best = std::min(best, size);
     done = size <= enough * motion || without_gain >= patience;
-    if (done && best > left_by_stall * motion && !saddle_.fine() && saddle_.factorise_finely()) {
+    if (!small_ && done && best > left_by_stall * motion && !saddle_.fine() && saddle_.factorise_finely()) {
       done = careful_ = false;
       finely_ = steps_finely;
       without_gain = 0;
       weak_modes_.restart();
-    } else if (!done && size > std::max(slow * last, digits * motion)) {
+    } else if (!small_ && !done && size > std::max(slow * last, digits * motion)) {
       const auto flat = [](auto& x, Index length) { return Eigen::Map<VectorXd>(x.data(), length); };
       weak_modes_.extrapolate(flat(rhs_f_, eq_.dX.size()), flat(eq_.dX, eq_.dX.size()),
                               flat(eq_.lambda, eq_.lambda.size()));
