@@ -61,8 +61,8 @@ class ConstraintBlock {
   virtual bool values(int /*poses*/, const double* /*q*/, Index /*stride*/, double* /*phi*/) const {
     return false;
   }
-  // What motions from the pose q0 change of each row, where nothing cancels: round-off is relative to the
-  // motion. Of rows that do not depend on time.
+  // What motions from the pose q0 (moves: interleaved, without gaps) change of each row, where nothing
+  // cancels: round-off is relative to the motion. Of rows that do not depend on time.
   virtual bool changes(int /*poses*/, const double* /*q0*/, const double* /*moves*/, double* /*phi*/) const {
     return false;
   }
