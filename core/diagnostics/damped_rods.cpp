@@ -43,12 +43,10 @@ SparseRows DampedRods::derivative(const System& system, const VectorXd& q) const
 }
 
 double DampedRods::taken(const System& system, const State& a, const State& b, const Quadrature& rule) const {
-  constexpr double still = 1e-11;  // of the rod's speed, at rates of rods that a step has stopped
   const Index points = rule.nodes.size();
   const double h = b.t - a.t;
-  VectorXd q(system.coordinates()), v(system.coordinates()), nodes(points + 1);
+  VectorXd q(system.coordinates()), nodes(points + 1);
   system.expand(a.z, q);
-  system.expand_rate(a.w, v);
   nodes << 0.0, rule.nodes;
   const MatrixXd slope = Barycentric(nodes).derivative_matrix() / h;
   const MatrixXd of_points = slope.bottomRightCorner(points, points);
@@ -58,11 +56,7 @@ double DampedRods::taken(const System& system, const State& a, const State& b, c
     const Rod& rod = rods_[i];
     if (!(rod.damping_time > 0)) continue;
     const auto row = static_cast<Index>(i);
-    // Where a rod was stopped its coordinates do not tell what it has stored.
-    const bool stopped = a.tension.size() > 0 &&
-                         std::abs(rate_of_stretch(rod, a.t, q, v)) <= still * v.lpNorm<Eigen::Infinity>();
-    const double start =
-        stopped ? rod.compliance() * a.tension[row] : across_rod(rod, q).norm() - rod.rest_length(a.t);
+    const double start = across_rod(rod, q).norm() - rod.rest_length(a.t);
     const MatrixXd both = MatrixXd::Identity(points, points) + rod.damping_time * of_points;
     const VectorXd stretch = both.partialPivLu().solve(VectorXd(
         rod.compliance() * b.stage_tension.row(row).transpose() - rod.damping_time * start * of_start));

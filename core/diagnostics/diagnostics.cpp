@@ -103,7 +103,7 @@ const std::array rows{
     Row{"kinetic_energy_J", "kinetic energy", "J", Needs::nothing,
         [](const Instant& s) { return s.kinetic(); }},
     Row{"potential_energy_J", "potential energy", "J", Needs::nothing,
-        [](const Instant& s) { return s.system().potential_energy(s.state, s.q); }},
+        [](const Instant& s) { return s.system().potential_energy(s.q); }},
     Row{"work_J", "work of loads and motors, of elastic cables and rods that change their lengths", "J",
         Needs::nothing, [](const Instant& s) { return s.work(); }},
     Row{"dissipated_J", "energy taken by dampers and friction", "J", Needs::dampers,
@@ -114,7 +114,7 @@ const std::array rows{
         [](const Instant& s) { return s.flow.impact_loss[s.i]; }},
     Row{"energy_balance_J", "energy balance", "J", Needs::nothing,
         [](const Instant& s) {
-          return s.kinetic() + s.system().potential_energy(s.state, s.q) - s.first_energy - s.work() +
+          return s.kinetic() + s.system().potential_energy(s.q) - s.first_energy - s.work() +
                  s.flow.dissipated[s.i] - s.flow.drive_work[s.i] + s.flow.impact_loss[s.i];
         }},
     Row{"constraint_max_m", "constraint error", "m", Needs::nothing,
@@ -350,7 +350,7 @@ class StateTable {
     system_->all_constraint_rates(state.t, q, v, velocity_phi_, scratch_);
     VectorXd lambda;
     if (!books_) lambda = find_forces(i, q, v);
-    if (i == 0) first_energy_ = system_->kinetic_energy(state.w) + system_->potential_energy(state, q);
+    if (i == 0) first_energy_ = system_->kinetic_energy(state.w) + system_->potential_energy(q);
     const double angle = fold_.at(state.t, q, v);
     const Instant instant{run_,
                           i,

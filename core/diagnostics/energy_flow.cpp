@@ -89,7 +89,7 @@ double EnergyMeter::dampers_take(double t, const VectorXd& v, const double* tens
 double EnergyMeter::energy(const State& state) {
   system_.follow(state);
   system_.expand(state.z, q_);
-  return system_.kinetic_energy(state.w) + system_.potential_energy(state, q_) - system_.load_work(q_);
+  return system_.kinetic_energy(state.w) + system_.potential_energy(q_) - system_.load_work(q_);
 }
 
 // The motion a time after the state, or before it; what depends on time itself, as what warms, by another.

@@ -357,6 +357,7 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   if (system_.rheonomic()) system_.target_rate(state.t + h, rate_);
   saddle_.solve(p1_, rate_, w1_, mu_);
   eq_.rods.still(unheld, still, state.t + h, h, pose_, G_, w1_, mu_);
+  if (!eq_.rods.held.rods().empty()) hold_lengths(h, report);
   report.right_hand_sides += 1;
   if (!frozen_ || !w1_.allFinite()) {
     report.status = StepStatus::not_finite;
@@ -391,15 +392,6 @@ void Dvm::finish(State& state, double h, StepReport& report) {
     eq_.add_multipliers(state.lambda, state.stage_tension);
   }
   report.weak_end = !eq_.at_ends && ends_weakly(report);
-}
-
-// Rates at the Gauss points are those that the damper leaves, the rate at the end is not: w_1 becomes what
-// their polynomial says there. What the step resolves changes by an error of order s - 1, of a step without
-// length.
-void Dvm::let_go(double h) {
-  w1_ = eq_.dX * (c_.slope.bottomRows(c_.s - 1) * c_.tau_to_end) / h;
-  p1_.noalias() = system_.mass() * w1_;
-  saddle_.solve(p1_, rate_, w1_, mu_);
 }
 
 // z_1 = z_0 + dX. In steps with care what rounding takes from the sum is added to the next one: near a dead

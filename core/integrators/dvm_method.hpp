@@ -146,6 +146,7 @@ class Dvm final : public Integrator {
   void correct_at_ends(StepReport& report);
   void settle_end();
   void let_go(double h);
+  void hold_lengths(double h, StepReport& report);
   void finish(State& state, double h, StepReport& report);
 
   const System& system_;

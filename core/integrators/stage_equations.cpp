@@ -200,7 +200,7 @@ void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd&
     move_to(j);
     rods.take_from_lengths(j, t + c.tau[j] * h, q_tau_, v_tau_);
   }
-  const std::vector<Index> stopped = rods.held();
+  const std::vector<Index>& stopped = rods.held.rods();
   const bool by_motion = (c.s < fewest_that_tell || !stopped.empty()) && !others_unresolved(resolved);
   q_tau_ = Q.col(c.s - 1);
   system.expand_rate(w_1, v_tau_);
@@ -211,7 +211,7 @@ void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd&
   for (Index i = 0; i < tension.size(); ++i)
     if (rods.h_omega(i, h, directions) > resolved) tension[i] = rods.tension.row(i).dot(c.tau_to_end);
   if (by_motion && !told_by_motion(t + h, directions, resolved, tension) && !stopped.empty())
-    rods.find_still_forces(t + h, q_tau_, v_tau_, tension);
+    rods.held.find_forces(t + h, q_tau_, v_tau_, tension);
   error.setZero(tension.size());
   for (Index i = 0; i < tension.size(); ++i)
     if (rods.h_omega(i, h, directions) > resolved)
@@ -228,8 +228,8 @@ bool StageEquations::told_by_motion(double at, const SparseRows& directions, dou
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   system.jacobian(q_tau_, G, scratch);
-  if (!rods.take_as_stiff(std::move(fast), h, 0.1 * resolved, G, directions)) return false;
-  rods.find_still_forces(at, q_tau_, v_tau_, tension);
+  if (!rods.unresolved.take(std::move(fast), h, 0.1 * resolved, G, directions)) return false;
+  rods.unresolved.find_forces(at, q_tau_, v_tau_, tension);
   return true;
 }
 

@@ -68,7 +68,7 @@ class Marathon {
   void look() {
     system_.follow(state_);
     system_.expand(state_.z, q_);
-    const double kinetic = system_.kinetic_energy(state_.w), potential = system_.potential_energy(state_, q_),
+    const double kinetic = system_.kinetic_energy(state_.w), potential = system_.potential_energy(q_),
                  work = system_.load_work(q_) + flow_.load_work;
     turned_over_.add(kinetic, std::array{potential, work, flow_.dissipated, flow_.drive_work});
     const double energy = kinetic + potential - work + flow_.dissipated - flow_.drive_work;

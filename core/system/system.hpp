@@ -116,9 +116,7 @@ class System {
   // by.
   VectorXd moving_mass() const;
   double potential_energy(const ConstVec& q) const;  // gravity and springs [J]
-  // The same at a state in this pose: rods whose forces its coordinates do not tell have stored C N^2 / 2.
-  double potential_energy(const State& state, const ConstVec& q) const;
-  double load_work(const ConstVec& q) const;  // of the constant loads since q = 0 [J]
+  double load_work(const ConstVec& q) const;         // of the constant loads since q = 0 [J]
 
   // Power of the forces that have no potential [W]: loads that vary, or dampers (negative).
   bool has_power(bool dissipative) const;

@@ -45,26 +45,6 @@ SparseRows System::tension_derivatives(double t, const ConstVec& q, const ConstV
   return SparseRows(data_->B_transposed * A);
 }
 
-// Waves that a step does not resolve keep their energy in the coordinates at its ends, e^2 / 2 C. What a
-// method holds still, e' = 0 to round-off, has no wave, and e is the error of the method's coordinates there:
-// it has stored C N^2 / 2.
-double System::potential_energy(const State& state, const ConstVec& q) const {
-  constexpr double still = 1e-11;  // of the rod's speed
-  double sum = potential_energy(q);
-  if (state.tension.size() == 0) return sum;
-  VectorXd v(coordinates());
-  expand_rate(state.w, v);
-  Index i = 0;
-  for (const Rod& rod : data_->elastic_rods->rods()) {
-    const Vec3 d = node_vector(q.data(), rod.b) - node_vector(q.data(), rod.a),
-               u = node_vector(v.data(), rod.b) - node_vector(v.data(), rod.a);
-    const double e = d.norm() - rod.rest_length(state.t), N = state.tension[i++], C = rod.compliance(),
-                 rate = d.normalized().dot(u) - rod.rest_rate(state.t);
-    if (std::abs(rate) <= still * v.lpNorm<Eigen::Infinity>()) sum += 0.5 * (C * N * N - e * e / C);
-  }
-  return sum;
-}
-
 SparseRows System::Data::reduced_forces(const ForceDerivative& derivative) const {
   return SparseRows(B_transposed * reduced_rows(derivative, coordinates));
 }

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is taken out of a step's end: errors of lengths that are held, and rates that dampers have taken.
+#include "core/forces/elastic_rods.hpp"
+#include "core/integrators/dvm_method.hpp"
+
+namespace unfurl {
+
+// Modes of elastic rods that are held still have at the end's coordinates an error of the method, no wave:
+// it is taken out as that of their rates, z_1 += M^-1 D^T nu, and p_1 goes with it as with any change of
+// coordinates, p_1 -= (D^T nu)' w_1: else mechanisms would lose what their arms are longer by. Constraints
+// keep what they are.
+void Dvm::hold_lengths(double h, StepReport& report) {
+  constexpr int passes = 4;  // each leaves a thousandth, the share of a rod's length that it is about
+  VectorXd tension, error, v(pose_.size()), nu = VectorXd::Zero(std::ssize(system_.giving_rods()));
+  VectorXd phi(eq_.phi.rows()), y(phi.size()), dz(eq_.dX.rows());
+  eq_.end_tension(w1_, resolved * (c_.s - 1), tension, error);
+  system_.expand_rate(w1_, v);
+  end_z_ = eq_.dX.col(c_.s - 2);
+  end_q_ = pose_;
+  for (int pass = 0; pass < passes; ++pass) {
+    end_z_ += eq_.rods.towards(eq_.t + h, end_q_, v, tension, nu);
+    if (phi.size() > 0) {
+      system_.expand(eq_.z0 + end_z_, end_q_);
+      system_.constraint(eq_.t + h, end_q_, phi);
+      saddle_.solve(VectorXd::Zero(dz.size()), -phi, dz, y);
+      end_z_ += dz;
+    }
+    system_.expand(eq_.z0 + end_z_, end_q_);
+  }
+  if (!end_z_.allFinite()) return;
+  p1_ -= eq_.rods.turned(pose_, v, nu);
+  pose_ = end_q_;
+  eq_.dX.col(c_.s - 2) = end_z_;
+  eq_.place_nodes();
+  if (phi.size() > 0) {
+    system_.constraint(eq_.t + h, pose_, phi);
+    eq_.phi.col(c_.s - 2) = phi;
+  }
+  freeze(pose_, report);
+  saddle_.solve(p1_, rate_, w1_, mu_);
+  eq_.rods.still(unheld, still, eq_.t + h, h, pose_, G_, w1_, mu_);
+}
+
+// Rates at the Gauss points are those that the damper leaves, the rate at the end is not: w_1 becomes what
+// their polynomial says there. What the step resolves changes by an error of order s - 1, of a step without
+// length.
+void Dvm::let_go(double h) {
+  w1_ = eq_.dX * (c_.slope.bottomRows(c_.s - 1) * c_.tau_to_end) / h;
+  p1_.noalias() = system_.mass() * w1_;
+  saddle_.solve(p1_, rate_, w1_, mu_);
+}
+
+}  // namespace unfurl
