@@ -356,7 +356,7 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   if (tight_ && frozen_) saddle_.weakest_pivot(needed_pivot_);
   if (system_.rheonomic()) system_.target_rate(state.t + h, rate_);
   saddle_.solve(p1_, rate_, w1_, mu_);
-  eq_.rods.still(unheld, still, state.t + h, h, pose_, G_, w1_, mu_);
+  still(h);
   if (!eq_.rods.held.rods().empty()) hold_lengths(h, report);
   report.right_hand_sides += 1;
   if (!frozen_ || !w1_.allFinite()) {
@@ -378,12 +378,12 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   state.w = w1_;
   state.tension.resize(0), state.tension_error.resize(0);
   state.stage_tension.resize(0, 0);
-  const double followed = resolved * (c_.s - 1);
+  const double part = part_of_whole(h), followed = part * resolved * (c_.s - 1);
   const bool unresolved = system_.elastic_rods() != nullptr && eq_.h_omega() > followed && !eq_.held();
   const bool damped = unresolved && system_.has_power(true);
   if (eq_.rods.as_unknowns &&
       (system_.rheonomic() || system_.by_tension() || system_.elastic_rods()->has_power() || damped))
-    state.stage_tension = unresolved ? eq_.stage_tension(unheld) : eq_.rods.tension;
+    state.stage_tension = unresolved ? eq_.stage_tension(part * unheld) : eq_.rods.tension;
   if (unresolved) eq_.end_tension(w1_, followed, state.tension, state.tension_error);
   if (damped && !eq_.rods.as_unknowns) state.stage_tension = eq_.rods.tension;  // by lengths there
   if (system_.rheonomic() && !eq_.at_ends && eq_.h_omega() > followed && eq_.others_unresolved(followed) &&

@@ -5,6 +5,11 @@
 
 namespace unfurl {
 
+void Dvm::still(double h) {
+  if (!eq_.rods.as_unknowns && part_of_whole(h) == 1) return eq_.rods.held.clear();
+  eq_.rods.still(unheld, slowest_still, eq_.t + h, std::max(whole_, std::abs(h)), pose_, G_, w1_, mu_);
+}
+
 // Modes of elastic rods that are held still have at the end's coordinates an error of the method, no wave:
 // it is taken out as that of their rates, z_1 += M^-1 D^T nu, and p_1 goes with it as with any change of
 // coordinates, p_1 -= (D^T nu)' w_1: else mechanisms would lose what their arms are longer by. Constraints
@@ -13,7 +18,7 @@ void Dvm::hold_lengths(double h, StepReport& report) {
   constexpr int passes = 4;  // each leaves a thousandth, the share of a rod's length that it is about
   VectorXd tension, error, v(pose_.size()), nu = VectorXd::Zero(std::ssize(system_.giving_rods()));
   VectorXd phi(eq_.phi.rows()), y(phi.size()), dz(eq_.dX.rows());
-  eq_.end_tension(w1_, resolved * (c_.s - 1), tension, error);
+  eq_.end_tension(w1_, part_of_whole(h) * resolved * (c_.s - 1), tension, error);
   system_.expand_rate(w1_, v);
   end_z_ = eq_.dX.col(c_.s - 2);
   end_q_ = pose_;
@@ -38,7 +43,7 @@ void Dvm::hold_lengths(double h, StepReport& report) {
   }
   freeze(pose_, report);
   saddle_.solve(p1_, rate_, w1_, mu_);
-  eq_.rods.still(unheld, still, eq_.t + h, h, pose_, G_, w1_, mu_);
+  still(h);
 }
 
 // Rates at the Gauss points are those that the damper leaves, the rate at the end is not: w_1 becomes what

@@ -73,6 +73,7 @@ class Dvm final : public Integrator {
   double longest_step(const State& state, double h, double whole) override;
   bool inside(const State& start, double h, double share, VectorXd& z, VectorXd& w) const override;
 
+  void stop_waves_of(double h) override { whole_ = h; }
   void restart() override {
     have_history_ = false;
     frozen_ = false;
@@ -110,7 +111,7 @@ class Dvm final : public Integrator {
   static constexpr double weak_pivot = 1e-6 * 1e-6;  // sigma^2
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr double most_prolonged = 4;  // steps of the last one's length
-  static constexpr double still = 10;          // that of modes whose velocity is held, far above
+  static constexpr double slowest_still = 10;  // that of modes whose velocity is held, far above
   static constexpr double unheld = 100;        // h omega of a rod, from above, whose velocity at ends is held
   static constexpr double resolved =
       1.5;  // h omega, from above, per stage but one: the ends tell forces of waves
@@ -131,6 +132,7 @@ class Dvm final : public Integrator {
   }
   bool stiff_iterations(const State& state, StepReport& report);
   bool steered_iterations(const State& state, StepReport& report);
+  double part_of_whole(double h) const { return std::abs(h) / std::max(whole_, std::abs(h)); }
   bool needs_care();
   bool ends_weakly(StepReport& report);
   bool tight_iterations(const State& state, StepReport& report);
@@ -146,6 +148,7 @@ class Dvm final : public Integrator {
   void correct_at_ends(StepReport& report);
   void settle_end();
   void let_go(double h);
+  void still(double h);
   void hold_lengths(double h, StepReport& report);
   void finish(State& state, double h, StepReport& report);
 
@@ -172,6 +175,7 @@ class Dvm final : public Integrator {
   bool careful_ = false;
   bool feed_ = true;
   bool slow_ = false;  // the last step took many iterations
+  double whole_ = 0;   // steps are parts of one of this length
   Settling settling_;
   bool stiff_ = false;  // forces are too stiff at this step for an iteration that knows nothing of them
   bool steerable_ = false;

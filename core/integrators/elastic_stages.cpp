@@ -75,7 +75,7 @@ double ElasticStages::rate_over_omega(Index i, double t, const VectorXd& w, cons
 void ElasticStages::still(double fast, double stiff, double t, double h, const VectorXd& q,
                           const SparseRows& G, VectorXd& w, VectorXd& mu) {
   held.clear();
-  if (!as_unknowns) return;
+  if (!rods_) return;
   std::vector<Index> fastest;
   const SparseRows D = system_.giving_rod_directions(q);
   for (Index i = 0; i < D.rows(); ++i)

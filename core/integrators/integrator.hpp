@@ -31,6 +31,8 @@ class Integrator {
   }
   // A step of the same run has reported that rows contradict each other (StepReport).
   virtual void expect_contradictions() {}
+  // Shorter steps are parts of one of this length: they stop what it stops of waves.
+  virtual void stop_waves_of(double /*h*/) {}
 };
 
 // What a method claims about itself; the conformance test checks every claim of every row.

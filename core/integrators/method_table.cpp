@@ -71,6 +71,7 @@ class Following final : public Integrator {
   }
   void restart() override { plain_->restart(); }
   void expect_contradictions() override { plain_->expect_contradictions(); }
+  void stop_waves_of(double h) override { plain_->stop_waves_of(h); }
 
  private:
   System system_;

@@ -13,9 +13,6 @@ namespace {
 constexpr std::size_t most_idle = 4;
 constexpr double too_short =
     1e-7;  // share of the way between the states, below which a straight line will do
-// Up to this share a step may be short enough to follow waves that the run's own stop, and then makes some of
-// what those leave of lengths: forces are those of the states.
-constexpr double close = 0.05;
 constexpr int most_pieces = 8;
 constexpr int closest_stages = 8;
 
@@ -86,6 +83,7 @@ State DenseOutput::between(const std::shared_ptr<const Model>& model, const Stat
     pieces = most_pieces;
   Engine engine = borrow(model);
   if (step.contradictions) engine.integrator->expect_contradictions();
+  engine.integrator->stop_waves_of(b.t - a.t);
   bool solved = false;
   for (; pieces <= most_pieces && !solved; pieces *= 2) {
     state = a;
@@ -99,11 +97,6 @@ State DenseOutput::between(const std::shared_ptr<const Model>& model, const Stat
     project(model->system, state);
   }
   state.t = t;
-  if (h <= close * (b.t - a.t) && state.tension.size() == 0 && a.tension.size() == b.tension.size()) {
-    const double u = h / (b.t - a.t);
-    state.tension = (1 - u) * a.tension + u * b.tension;
-    state.tension_error = a.tension_error.cwiseMax(b.tension_error);
-  }
   return state;
 }
 
