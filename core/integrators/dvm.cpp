@@ -357,6 +357,7 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   if (system_.rheonomic()) system_.target_rate(state.t + h, rate_);
   saddle_.solve(p1_, rate_, w1_, mu_);
   still(h);
+  unheld_.h = 0;
   if (!eq_.rods.held.rods().empty()) hold_lengths(h, report);
   report.right_hand_sides += 1;
   if (!frozen_ || !w1_.allFinite()) {
@@ -376,6 +377,7 @@ void Dvm::finish(State& state, double h, StepReport& report) {
   state.lambda = mu_ / (h * eq_.multiplier_weight(c_.s - 1));
   if (settling_.lets_go()) let_go(h);
   state.w = w1_;
+  if (unheld_.h != 0) unheld_.left_z = state.z, unheld_.left_w = state.w;
   state.tension.resize(0), state.tension_error.resize(0);
   state.stage_tension.resize(0, 0);
   const double part = part_of_whole(h), followed = part * resolved * (c_.s - 1);
@@ -401,7 +403,7 @@ void Dvm::arrive(State& state) {
   if (tight_)
     carried_.add(end_z_, state.z);
   else
-    state.z += end_z_;
+    state.z = eq_.z0 + end_z_;
 }
 
 std::unique_ptr<Integrator> make_dvm(const System& system, const SolverOptions& options) {

@@ -10,6 +10,19 @@ void Dvm::still(double h) {
   eq_.rods.still(unheld, slowest_still, eq_.t + h, std::max(whole_, std::abs(h)), pose_, G_, w1_, mu_);
 }
 
+// Of modes far beyond a step the scheme leaves -1 of what they begin with where its stages are even in
+// number, 1 where they are odd (Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.3:
+// R at infinity of s - 1 Gauss points). Errors of lengths that a step ends with add up with odd ones, and are
+// taken out. With even ones they are half of a step's, this way and that in turn, which is what makes the
+// motion symmetric: steps of one length go on with them, although states have none.
+void Dvm::start(const State& state, double h) {
+  constexpr double same = 1e-9;
+  if (std::abs(unheld_.h - h) <= same * std::abs(h) && unheld_.left_z == state.z && unheld_.left_w == state.w)
+    eq_.start(state.t, unheld_.z, unheld_.w, h);
+  else
+    eq_.start(state.t, state.z, state.w, h);
+}
+
 // Modes of elastic rods that are held still have at the end's coordinates an error of the method, no wave:
 // it is taken out as that of their rates, z_1 += M^-1 D^T nu, and p_1 goes with it as with any change of
 // coordinates, p_1 -= (D^T nu)' w_1: else mechanisms would lose what their arms are longer by. Constraints
@@ -33,6 +46,7 @@ void Dvm::hold_lengths(double h, StepReport& report) {
     system_.expand(eq_.z0 + end_z_, end_q_);
   }
   if (!end_z_.allFinite()) return;
+  if (c_.s % 2 == 0) unheld_.z = eq_.z0 + eq_.dX.col(c_.s - 2), unheld_.w = w1_, unheld_.h = h;
   p1_ -= eq_.rods.turned(pose_, v, nu);
   pose_ = end_q_;
   eq_.dX.col(c_.s - 2) = end_z_;

@@ -54,7 +54,7 @@ class Dvm final : public Integrator {
 
   StepReport step(State& state, double h) override {
     StepReport report;
-    eq_.start(state.t, state.z, state.w, h);
+    start(state, h);
     if (h != matrices_h_) set_matrices(h);
     predict(state, h);
     if (!frozen_) freeze(eq_.start_pose(), report);
@@ -81,6 +81,7 @@ class Dvm final : public Integrator {
     slow_ = stiff_ = false;
     finely_ = 0;
     settling_.restart();
+    unheld_.h = 0;
     newton_.forget();
     eq_.restart();
   }
@@ -119,6 +120,7 @@ class Dvm final : public Integrator {
   static bool is_small(const System& system, int stages);
 
   void analyse_mass();
+  void start(const State& state, double h);
   void set_matrices(double h);
   void predict(const State& state, double h);
   void freeze(const ConstVec& q, StepReport& report);
@@ -176,6 +178,10 @@ class Dvm final : public Integrator {
   bool feed_ = true;
   bool slow_ = false;  // the last step took many iterations
   double whole_ = 0;   // steps are parts of one of this length
+  struct {
+    VectorXd z, w, left_z, left_w;
+    double h = 0;
+  } unheld_;  // where the last step of this length would have ended without hold_lengths(), and what it left
   Settling settling_;
   bool stiff_ = false;  // forces are too stiff at this step for an iteration that knows nothing of them
   bool steerable_ = false;
