@@ -29,9 +29,9 @@ void Dvm::start(const State& state, double h) {
 // keep what they are.
 void Dvm::hold_lengths(double h, StepReport& report) {
   constexpr int passes = 4;  // each leaves a thousandth, the share of a rod's length that it is about
-  VectorXd tension, error, v(pose_.size()), nu = VectorXd::Zero(std::ssize(system_.giving_rods()));
+  VectorXd v(pose_.size()), nu = VectorXd::Zero(std::ssize(system_.giving_rods()));
   VectorXd phi(eq_.phi.rows()), y(phi.size()), dz(eq_.dX.rows());
-  eq_.end_tension(w1_, part_of_whole(h) * resolved * (c_.s - 1), tension, error);
+  const VectorXd tension = eq_.held_tension(w1_, part_of_whole(h) * resolved * (c_.s - 1));
   system_.expand_rate(w1_, v);
   end_z_ = eq_.dX.col(c_.s - 2);
   end_q_ = pose_;

@@ -195,51 +195,75 @@ void StageEquations::applied_forces() {
   }
 }
 
-void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd& tension, VectorXd& error) {
+bool StageEquations::end_by_motion(const VectorXd& w_1, double resolved, VectorXd& tension) {
   for (Index j = 0; j < c.tau.size() && !rods.as_unknowns; ++j) {
     move_to(j);
     rods.take_from_lengths(j, t + c.tau[j] * h, q_tau_, v_tau_);
   }
-  const std::vector<Index>& stopped = rods.held.rods();
-  const bool by_motion = (c.s < fewest_that_tell || !stopped.empty()) && !others_unresolved(resolved);
+  const bool stopped = !rods.held.rods().empty();
+  const bool by_motion = (c.s < fewest_that_tell || stopped) && !others_unresolved(resolved);
   q_tau_ = Q.col(c.s - 1);
   system.expand_rate(w_1, v_tau_);
   tension.resize(rods.tension.rows());
   system.giving_rod_forces(t + h, q_tau_, v_tau_, tension);
-  const VectorXd by_lengths = tension;
-  const SparseRows directions = system.giving_rod_directions(q_tau_);
-  for (Index i = 0; i < tension.size(); ++i)
-    if (rods.h_omega(i, h, directions) > resolved) tension[i] = rods.tension.row(i).dot(c.tau_to_end);
-  if (by_motion && !told_by_motion(t + h, directions, resolved, tension) && !stopped.empty())
-    rods.held.find_forces(t + h, q_tau_, v_tau_, tension);
-  error.setZero(tension.size());
-  for (Index i = 0; i < tension.size(); ++i)
-    if (rods.h_omega(i, h, directions) > resolved)
-      error[i] = std::hypot(by_lengths[i] - tension[i], rods.rate_over_omega(i, t + h, w_1, directions));
-  for (const Index i : stopped) error[i] = 0;
+  if (by_motion && stopped) rods.held.find_forces(t + h, q_tau_, v_tau_, tension);
+  return by_motion;
 }
 
-bool StageEquations::told_by_motion(double at, const SparseRows& directions, double resolved,
-                                    VectorXd& tension) {
-  if (c.s >= fewest_that_tell) return false;
-  std::vector<Index> fast;
-  for (Index i = 0; i < directions.rows(); ++i)
+VectorXd StageEquations::held_tension(const VectorXd& w_1, double resolved) {
+  VectorXd tension;
+  const bool by_motion = end_by_motion(w_1, resolved, tension);
+  tension = rods.tension * c.tau_to_end;
+  if (by_motion) rods.held.find_forces(t + h, q_tau_, v_tau_, tension);
+  return tension;
+}
+
+void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd& tension, VectorXd& error) {
+  const bool by_motion = end_by_motion(w_1, resolved, tension), few = c.s < fewest_that_tell;
+  VectorXd by_lengths(tension.size());
+  system.giving_rod_forces(t + h, q_tau_, v_tau_, by_lengths);
+  const SparseRows directions = system.giving_rod_directions(q_tau_);
+  std::vector<Index> stopped, fast;
+  if (by_motion) stopped = rods.held.rods();
+  for (Index i = 0; i < tension.size(); ++i)
     if (rods.h_omega(i, h, directions) > resolved) fast.push_back(i);
+  for (const Index i : fast)
+    if (!(by_motion && few) && !std::binary_search(stopped.begin(), stopped.end(), i))
+      tension[i] = rods.tension.row(i).dot(c.tau_to_end);
+  VectorXd without = tension, amplitude = VectorXd::Zero(tension.size());
+  const bool told = by_motion && take_unresolved(fast, directions, resolved);
+  if (told) {
+    rods.unresolved.find_forces(t + h, q_tau_, v_tau_, without);
+    amplitude = resolved / h * rods.unresolved.impulse(t + h, w_1);
+  }
+  error.setZero(tension.size());
+  for (const Index i : fast)
+    error[i] = told && std::binary_search(stopped.begin(), stopped.end(), i)
+                   ? std::hypot(tension[i] - without[i], amplitude[i])
+                   : std::hypot(by_lengths[i] - (few && told ? without : tension)[i],
+                                rods.rate_over_omega(i, t + h, w_1, directions));
+  if (few && told) tension = without;
+}
+
+bool StageEquations::take_unresolved(std::vector<Index> fast, const SparseRows& directions, double stiff) {
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   system.jacobian(q_tau_, G, scratch);
-  if (!rods.unresolved.take(std::move(fast), h, 0.1 * resolved, G, directions)) return false;
-  rods.unresolved.find_forces(at, q_tau_, v_tau_, tension);
-  return true;
+  return rods.unresolved.take(std::move(fast), h, stiff, G, directions);
 }
 
 MatrixXd StageEquations::stage_tension(double beyond) {
   MatrixXd out = rods.tension;
   for (Index j = 0; j < c.tau.size() && c.s < fewest_that_tell; ++j) {
     move_to(j);
+    const SparseRows directions = system.giving_rod_directions(q_tau_);
+    std::vector<Index> fast;
+    for (Index i = 0; i < directions.rows(); ++i)
+      if (rods.h_omega(i, h, directions) > beyond) fast.push_back(i);
     VectorXd tension = out.col(j);
-    if (told_by_motion(t + c.tau[j] * h, system.giving_rod_directions(q_tau_), beyond, tension))
-      out.col(j) = tension;
+    if (!take_unresolved(std::move(fast), directions, 0.1 * beyond)) continue;
+    rods.unresolved.find_forces(t + c.tau[j] * h, q_tau_, v_tau_, tension);
+    out.col(j) = tension;
   }
   return out;
 }

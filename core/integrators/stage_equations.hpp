@@ -65,15 +65,17 @@ class StageEquations {
   double h_rate() const;   // h c / m of the strongest damper, from above
   // Whether h omega, from above, of any force but those of rods that give is more (allocates).
   bool others_unresolved(double resolved);
-  // Axial forces of the rods that give at the step's end, with velocity w_1: by the polynomial through those
-  // at the points of the quadrature for rods of h omega > `resolved`, whose waves are not resolved, so that
-  // the end's coordinates do not tell them; else by their lengths. By the motion, for which they are rigid,
-  // those of rods that are held still and, with fewer than four stages, of all that are not resolved: there
-  // the points of the quadrature do not tell them; not so beside waves of other forces that are not resolved,
-  // which the end's coordinates do not tell, either. `error`: what waves that are neither resolved nor
-  // stopped may change of them, by what lengths say otherwise and by the rate at which these change over
-  // omega [N].
+  // Axial forces of the rods that give at the step's end, with velocity w_1: by their lengths; for rods of
+  // h omega > `resolved`, whose waves are not resolved, so that the end's coordinates do not tell them, by
+  // the polynomial through those at the points of the quadrature. By the motion, for which they are rigid,
+  // those of the modes that are held still and, with fewer than four stages, of all modes of h omega >
+  // `resolved`: there the points of the quadrature do not tell them; not so beside waves of other forces that
+  // are not resolved, which the end's coordinates do not tell, either. `error`: what modes that are neither
+  // resolved nor stopped may change of them, by what lengths say of them and by the rate at which these
+  // change over omega [N].
   void end_tension(const VectorXd& w_1, double resolved, VectorXd& tension, VectorXd& error);
+  // The same of the rods that are held still, whose lengths need not be held yet.
+  VectorXd held_tension(const VectorXd& w_1, double resolved);
   // At the points of the quadrature, as powers take them: with fewer than four stages by the motion for rods
   // of h omega > `beyond`.
   MatrixXd stage_tension(double beyond);
@@ -124,9 +126,11 @@ class StageEquations {
   void measure_constraints();
   void use_step();
   void move_to(Index j);
-  // The forces of rods of h omega > `resolved` at the pose and velocity moved to, where stages do not tell
-  // them.
-  bool told_by_motion(double at, const SparseRows& directions, double resolved, VectorXd& tension);
+  // Moves to the step's end: its forces by lengths, those of modes that are held by the motion; false: that
+  // does not tell them.
+  bool end_by_motion(const VectorXd& w_1, double resolved, VectorXd& tension);
+  // The modes of h omega > `stiff` of these rods at the pose moved to.
+  bool take_unresolved(std::vector<Index> rods, const SparseRows& directions, double stiff);
   void applied_forces();
   void constraint_changes();
   void measure();

@@ -64,12 +64,24 @@ bool StiffModes::take(std::vector<Index> rods, double h, double stiff, const Spa
   return rods_.clear(), false;
 }
 
-void StiffModes::still(double t, VectorXd& w, VectorXd& mu) const {
-  if (rods_.empty()) return;
+StiffModes::Answer StiffModes::stopping(double t, const VectorXd& w) const {
   VectorXd r = -rates_of(w);
   for (Index k = 0; k < r.size(); ++k) r[k] += rod_at(k).rest_rate(t);
-  const Answer taken = answer(std::move(r));
+  return answer(std::move(r));
+}
+
+void StiffModes::still(double t, VectorXd& w, VectorXd& mu) const {
+  if (rods_.empty()) return;
+  const Answer taken = stopping(t, w);
   w += taken.x, mu += taken.mu;
+}
+
+VectorXd StiffModes::impulse(double t, const VectorXd& w) const {
+  VectorXd out = VectorXd::Zero(D_.rows());
+  if (rods_.empty()) return out;
+  const VectorXd nu = stopping(t, w).nu;
+  for (Index k = 0; k < nu.size(); ++k) out[rods_[static_cast<std::size_t>(k)]] = nu[k];
+  return out;
 }
 
 VectorXd StiffModes::rates_of(const VectorXd& w) const {

@@ -31,6 +31,8 @@ class StiffModes {
   // points alone do not hold: what is left of D w at a step's end would grow from step to step. This takes it
   // out of w and mu, which solve M w + G^T mu = p, G w = rate, but for the rods' warming.
   void still(double t, VectorXd& w, VectorXd& mu) const;
+  // That of every rod that gives which stops them so [N s].
+  VectorXd impulse(double t, const VectorXd& w) const;
   // The axial forces of these rods that go with that pose and velocity, told by the motion, for which they
   // are rigid in their stiff modes,
   //
@@ -47,6 +49,7 @@ class StiffModes {
     VectorXd x, mu, nu;
   };
   Answer answer(VectorXd r) const;
+  Answer stopping(double t, const VectorXd& w) const;
   VectorXd rates_of(const VectorXd& w) const;  // D w of these rods
   const Rod& rod_at(Index k) const;
 
