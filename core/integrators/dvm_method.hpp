@@ -112,7 +112,7 @@ class Dvm final : public Integrator {
   static constexpr double weak_pivot = 1e-6 * 1e-6;  // sigma^2
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   static constexpr double most_prolonged = 4;  // steps of the last one's length
-  static constexpr double slowest_still = 10;  // that of modes whose velocity is held, far above
+  static constexpr double slowest_still = 30;  // that of modes whose velocity is held, far above
   static constexpr double unheld = 100;        // h omega of a rod, from above, whose velocity at ends is held
   static constexpr double resolved =
       1.5;  // h omega, from above, per stage but one: the ends tell forces of waves
