@@ -32,6 +32,7 @@ void Dvm::hold_lengths(double h, StepReport& report) {
   VectorXd v(pose_.size()), nu = VectorXd::Zero(std::ssize(system_.giving_rods()));
   VectorXd phi(eq_.phi.rows()), y(phi.size()), dz(eq_.dX.rows());
   const VectorXd tension = eq_.held_tension(w1_, part_of_whole(h) * resolved * (c_.s - 1));
+  if (tension.size() == 0) return;
   system_.expand_rate(w1_, v);
   end_z_ = eq_.dX.col(c_.s - 2);
   end_q_ = pose_;

@@ -212,9 +212,9 @@ bool StageEquations::end_by_motion(const VectorXd& w_1, double resolved, VectorX
 
 VectorXd StageEquations::held_tension(const VectorXd& w_1, double resolved) {
   VectorXd tension;
-  const bool by_motion = end_by_motion(w_1, resolved, tension);
+  if (!end_by_motion(w_1, resolved, tension)) return {};
   tension = rods.tension * c.tau_to_end;
-  if (by_motion) rods.held.find_forces(t + h, q_tau_, v_tau_, tension);
+  rods.held.find_forces(t + h, q_tau_, v_tau_, tension);
   return tension;
 }
 
@@ -223,13 +223,13 @@ void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd&
   VectorXd by_lengths(tension.size());
   system.giving_rod_forces(t + h, q_tau_, v_tau_, by_lengths);
   const SparseRows directions = system.giving_rod_directions(q_tau_);
-  std::vector<Index> stopped, fast;
-  if (by_motion) stopped = rods.held.rods();
+  const std::vector<Index>& held = rods.held.rods();
+  const auto is_held = [&](Index i) { return std::binary_search(held.begin(), held.end(), i); };
+  std::vector<Index> fast;
   for (Index i = 0; i < tension.size(); ++i)
     if (rods.h_omega(i, h, directions) > resolved) fast.push_back(i);
   for (const Index i : fast)
-    if (!(by_motion && few) && !std::binary_search(stopped.begin(), stopped.end(), i))
-      tension[i] = rods.tension.row(i).dot(c.tau_to_end);
+    if (!by_motion || !(few || is_held(i))) tension[i] = rods.tension.row(i).dot(c.tau_to_end);
   VectorXd without = tension, amplitude = VectorXd::Zero(tension.size());
   const bool told = by_motion && take_unresolved(fast, directions, resolved);
   if (told) {
@@ -237,11 +237,13 @@ void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd&
     amplitude = resolved / h * rods.unresolved.impulse(t + h, w_1);
   }
   error.setZero(tension.size());
-  for (const Index i : fast)
-    error[i] = told && std::binary_search(stopped.begin(), stopped.end(), i)
-                   ? std::hypot(tension[i] - without[i], amplitude[i])
-                   : std::hypot(by_lengths[i] - (few && told ? without : tension)[i],
-                                rods.rate_over_omega(i, t + h, w_1, directions));
+  for (const Index i : fast) {
+    const double rate = rods.rate_over_omega(i, t + h, w_1, directions);
+    if (!is_held(i))
+      error[i] = std::hypot(by_lengths[i] - (few && told ? without : tension)[i], rate);
+    else
+      error[i] = told ? std::hypot(tension[i] - without[i], amplitude[i]) : std::abs(rate);
+  }
   if (few && told) tension = without;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Elastic rods whose waves turn many times in a step: what they carry moves as it should.
+#include <Eigen/QR>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -109,10 +110,75 @@ end_time = 1
         REQUIRE(run.status == RunStatus::completed);
         const Diagnostics d = diagnose(run);
         // Of 4 J, and 20.8 N: what three stages leave with steps in which the cranks turn by 15 degrees, of
-        // order 4; and waves of what stretches them, 1e-5 of their length, in some thousandths of a step.
+        // order 4; and waves of what stretches them in modes of h omega below 50, which nothing stops.
         const std::vector<double>& off = d.at("energy_balance_J").values;
         CHECK(largest_magnitude(off.data(), std::ssize(off)) < 2e-4);
-        CHECK(peak_rod_force(run, d).force_N == Approx(most).epsilon(3e-5));
+        CHECK(peak_rod_force(run, d).force_N == Approx(most).epsilon(1.5e-4));
+      }
+}
+
+// Axial forces of `cranks` at this angle below the horizontal: A1 to B1 and so on swing on circles of 0.5 m
+// with rate^2 and acceleration of the pendulum let go at 30 degrees, and of all forces that move the nodes so
+// those of least complementary energy, as the rods began without any.
+VectorXd forces_of_cranks(double angle, const Structure& s) {
+  const double crank = 2700 * 1e-4 * 0.5, carried = 1 + 2700 * 1e-4 * (2.4 + 2 * std::sqrt(1.16));
+  const double l = 0.5, pull = 9.81 * (1.5 * crank + carried) / ((crank + carried) * l);
+  const Vec3 along(std::cos(angle), 0, -std::sin(angle)), across(-std::sin(angle), 0, -std::cos(angle));
+  const Vec3 a = l * (pull * std::cos(angle) * across - 2 * pull * (std::sin(angle) - 0.5) * along);
+  const auto at = [&](int node) -> Vec3 {
+    const Vec3 start = s.nodes[static_cast<std::size_t>(node)].position;
+    return node < 3 ? start : start - l * Vec3(std::sqrt(0.75), 0, -0.5) + l * along;
+  };
+  MatrixXd pulls = MatrixXd::Zero(8, 8);  // x and z of B1, B2, B3, T by rods
+  VectorXd needed = VectorXd::Zero(8), compliance(8);
+  const auto add = [&](int node, double inertia, double weight) {
+    if (node < 3) return;
+    needed[2 * (node - 3)] += inertia * a[0];
+    needed[2 * (node - 3) + 1] += inertia * a[2] + weight * 9.81;
+  };
+  for (std::size_t r = 0; r < 8; ++r) {
+    const Rod& rod = s.rods[r];
+    const Vec3 d = (at(rod.b) - at(rod.a)).normalized();
+    for (const auto& [node, sign] : {std::pair{rod.a, 1.0}, std::pair{rod.b, -1.0}}) {
+      add(node, rod.mass * (rod.a < 3 ? 1.0 / 3 : 0.5), rod.mass / 2);
+      if (node < 3) continue;
+      pulls(2 * (node - 3), static_cast<Index>(r)) = sign * d[0];
+      pulls(2 * (node - 3) + 1, static_cast<Index>(r)) = sign * d[2];
+    }
+    compliance[static_cast<Index>(r)] = rod.length;
+  }
+  add(6, 1, 1);
+  // Least N^T C N: y = C^1/2 N of least norm. The equations have rank 7: cranks cannot brake.
+  const VectorXd weights = compliance.cwiseSqrt().cwiseInverse();
+  return weights.cwiseProduct((pulls * weights.asDiagonal()).completeOrthogonalDecomposition().solve(needed));
+}
+
+TEST_CASE("redundant elastic rods share by their elasticity where steps stop their waves") {
+  const Structure structure = testing::model_of(cranks)->structure;
+  for (const char* modulus : {"7e10", "7e12"})
+    for (const char* step : {"0.01", "0.02"})
+      for (const char* stages : {"3", "4", "5"}) {
+        const Simulation run = testing::run_scene(
+            cranks, {std::string("structure.youngs_modulus=") + modulus, std::string("solver.step=") + step,
+                     std::string("solver.stages=") + stages});
+        const Diagnostics d = diagnose(run);
+        double off = 0, most = 0;
+        int known = 0;
+        for (std::size_t i = 1; i < run.trajectory.size(); ++i) {
+          const VectorXd q = run.trajectory.node_positions(i);
+          const VectorXd truth = forces_of_cranks(std::atan2(-q[11], q[9]), structure);
+          most = std::max(most, truth.lpNorm<Eigen::Infinity>());
+          const auto row = static_cast<Index>(i);
+          for (Index r = 0; r < truth.size(); ++r)
+            if (d.force_unique(row, r)) off = std::max(off, std::abs(d.axial_force(row, r) - truth[r]));
+          known += static_cast<int>(d.force_unique.row(row).cast<int>().sum());
+        }
+        CAPTURE(modulus, step, stages, off, most);
+        // A hundredth of the largest, or two of them, is what may be unknown of forces that are told; beyond
+        // h omega = 1000 nothing is left of waves, and the rods, longer by 1e-8, stand where rigid ones do.
+        const bool very_stiff = std::string(modulus) == "7e12";
+        CHECK(off < (very_stiff ? 1e-6 : 2e-2) * most);
+        if (very_stiff) CHECK(known == 8 * std::ssize(d.t) - 8);
       }
 }
 
@@ -156,28 +222,49 @@ end_time = 2
                  K = D.transpose() * stiffness.asDiagonal() * D;
   const SymmetricEigen modes = symmetric_eigen(inverse * K * inverse.transpose());
   const VectorXd pull = modes.vectors.transpose() * inverse * f;
-  const auto tip = [&](double t) {
+  const auto moved = [&](double t) -> VectorXd {
     const VectorXd way = (1 - (modes.values.cwiseSqrt() * t).array().cos()) / modes.values.array();
-    VectorXd moved(q.size());
-    system.expand_rate(inverse.transpose() * modes.vectors * way.cwiseProduct(pull), moved);
-    return moved[3 * 11 + 2];
+    return inverse.transpose() * modes.vectors * way.cwiseProduct(pull);
+  };
+  // Axial forces where modes of more than `stopped` [rad/s] are where they rest.
+  const auto forces = [&](double t, double stopped) -> VectorXd {
+    VectorXd way = (1 - (modes.values.cwiseSqrt() * t).array().cos()) / modes.values.array();
+    for (Index k = 0; k < way.size(); ++k)
+      if (modes.values[k] > stopped * stopped) way[k] = 1 / modes.values[k];
+    return stiffness.cwiseProduct(D * (inverse.transpose() * modes.vectors * way.cwiseProduct(pull)));
   };
   struct Steps {
     const char* step;
+    const char* stages;
     double left;  // of 7.6e-4 m [m]: its square over the height, and what a step of 0.8 / w leaves
   };
-  for (const auto& [step, left] : {Steps{"0.04", 2e-5}, Steps{"0.02", 5e-6}, Steps{"0.01", 3e-6}}) {
-    const Simulation run = testing::run_scene(truss, {std::string("solver.step=") + step});
+  VectorXd all(q.size());
+  for (const auto& [step, stages, left] :
+       {Steps{"0.04", "4", 2e-5}, Steps{"0.02", "4", 5e-6}, Steps{"0.01", "4", 3e-6},
+        Steps{"0.04", "3", 6e-5}, Steps{"0.02", "3", 6e-5}, Steps{"0.01", "2", 8e-5}}) {
+    const Simulation run = testing::run_scene(
+        truss, {std::string("solver.step=") + step, std::string("solver.stages=") + stages});
+    const Diagnostics d = diagnose(run);
     const Trajectory& states = run.trajectory;
-    double most = 0, off = 0;
-    for (std::size_t i = 0; i < states.size(); ++i) {
+    double most = 0, off = 0, force = 0, known_off = 0;
+    for (std::size_t i = 1; i < states.size(); ++i) {
       const double z = states.node_positions(i)[3 * 11 + 2];
+      system.expand_rate(moved(states.time(i)), all);
       most = std::max(most, std::abs(z));
-      off = std::max(off, std::abs(z - tip(states.time(i))));
+      off = std::max(off, std::abs(z - all[3 * 11 + 2]));
+      const auto row = static_cast<Index>(i);
+      const VectorXd truth = forces(states.time(i), 1.5 * (std::stod(stages) - 1) / std::stod(step));
+      force = std::max(force, truth.lpNorm<Eigen::Infinity>());
+      for (Index r = 0; r < truth.size(); ++r)
+        if (d.force_unique(row, r))
+          known_off = std::max(known_off, std::abs(d.axial_force(row, r) - truth[r]));
     }
-    CAPTURE(step, off);
+    CAPTURE(step, stages, off);
     CHECK(most > 7e-4);
     CHECK(off < left);
+    // What bends the truss is in its rods' forces: a second mode, of a twentieth of the first one's share, is
+    // told with errors of its phase where its period is five steps or so.
+    CHECK(known_off < 0.09 * force);
   }
 }
 
