@@ -240,7 +240,7 @@ Simulation measure(const SceneSource& source, int repeats, const StudyHooks& hoo
   const double before = heap_in_use();
   auto model = build_model(scene);
   const auto method = find_method(scene.solver.method)->make(model->system, scene.solver);
-  out.memory = heap_in_use() - before;
+  out.memory = std::max(heap_in_use() - before, 0.0);  // what was freed meanwhile may be more
   out.solved_coordinates = model->system.solved_coordinates();
   out.constraints = model->system.constraints();
   SimulationHooks own;
