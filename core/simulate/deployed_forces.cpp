@@ -95,6 +95,21 @@ VectorXd other_force_before(Index1& index1, const std::vector<NearDeployed>& sam
   return fits[best];
 }
 
+using Known = Eigen::ArrayX<bool>;
+
+VectorXd known_of(const VectorXd& lambda, const Known& known) {
+  return known.select(lambda.array(), std::numeric_limits<double>::quiet_NaN());
+}
+
+// Of those that are bounded, beside which nothing is left of the others: what they settle to best.
+VectorXd best_known(std::vector<VectorXd>& fits, const Known& bounded) {
+  constexpr double most_off = 1e-3;
+  for (VectorXd& fit : fits) fit = bounded.select(fit, 0.0);
+  const std::size_t best = settled_fit(fits, std::numeric_limits<double>::infinity());
+  const auto change = (fits[best] - fits[best - 1]).array().abs();
+  return known_of(fits[best], bounded && change <= most_off * fits[best].lpNorm<Eigen::Infinity>());
+}
+
 }  // namespace
 
 // By the equations of the pose, with what acts just before it. Beyond that, where fits that settle by
@@ -104,19 +119,16 @@ VectorXd other_force_before(Index1& index1, const std::vector<NearDeployed>& sam
 VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at,
                                  int poles) {
   constexpr double something_else = 1e-3, grows = 1e-4, wild = 10;
-  Eigen::ArrayX<bool> bounded = Eigen::ArrayX<bool>::Constant(samples.front().state.lambda.size(), true);
+  Known bounded = Known::Constant(samples.front().state.lambda.size(), true);
   for (int order = poles; order > 0; --order) {
     const VectorXd c = pole(samples, order);
     if (c.size() == 0) continue;
     bounded = bounded && c.array().abs() <= grows * c.lpNorm<Eigen::Infinity>();
     for (NearDeployed& sample : samples) sample.state.lambda -= c / std::pow(sample.sine, order);
   }
-  const std::vector<VectorXd> own = multiplier_fits(samples, 0);
+  std::vector<VectorXd> own = multiplier_fits(samples, 0);
   const std::size_t by_itself = settled_fit(own, most_open * own.back().norm());
-  if (!bounded.all()) {
-    const VectorXd& rest = by_itself > 0 ? own[by_itself] : own.back();
-    return bounded.select(rest.array(), std::numeric_limits<double>::quiet_NaN());
-  }
+  if (!bounded.all()) return by_itself > 0 ? known_of(own[by_itself], bounded) : best_known(own, bounded);
   std::vector<VectorXd> fits = own;
   index1.correct(at, fits, other_force_before(index1, samples, at));
   const std::size_t best = settled_fit(fits, most_open * fits[0].norm());

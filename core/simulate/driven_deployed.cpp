@@ -17,6 +17,7 @@
 #include "core/simulate/free_motion.hpp"
 #include "core/simulate/held_nodes.hpp"
 #include "core/simulate/initial_state.hpp"
+#include "core/simulate/led_forces.hpp"
 #include "core/simulate/measured_event.hpp"
 #include "core/structure/time_edges.hpp"
 
@@ -412,8 +413,8 @@ class DrivenLocator {
     return out;
   }
 
-  // On the constraints at its time, with multipliers from the poses before it: functions of time where the
-  // pose is at rest, as accelerations are, which go with its cube root then.
+  // On the constraints at its time, with multipliers from poses before it: functions of time where the pose
+  // is at rest, as accelerations are, which go with its cube root then.
   void finish(State& out, const DrivenStates& samples) {
     system_.follow(samples.back());
     system_.count_on(out);
@@ -429,6 +430,7 @@ class DrivenLocator {
       if (index1.evaluate(state, acceleration, state.lambda))
         before.push_back({rests ? out.t - state.t : left(state), std::move(state)});
     }
+    if (parts_.led) feel_as_at(system_, free_, index1, out, acceleration_at(out.t, samples), before);
     system_.follow(out);
     if (before.size() >= 3)
       out.lambda = multipliers_at_deployed(index1, std::move(before), out, rests ? 3 : 1);

@@ -57,6 +57,7 @@ FreeMotion::FreeMotion(const System& system, std::vector<Index> free)
       place_(static_cast<std::size_t>(system.solved_coordinates()), -1),
       jacobian_(system.jacobian_pattern()),
       acceleration_(system.solved_coordinates()),
+      lambda_(VectorXd::Zero(system.constraints())),
       q_(system.coordinates()),
       v_(system.coordinates()),
       f_(system.coordinates()),
@@ -85,28 +86,51 @@ void FreeMotion::put(const VectorXd& y, State& state) const {
 }
 
 // M_ff a + G_f^T lambda = F - M_fl a_l, G_f a = -bias - G_l a_l.
+bool FreeMotion::solve(const State& state, VectorXd& acceleration, VectorXd& lambda) {
+  const Index n = std::ssize(free_);
+  acceleration(free_).setZero();
+  system_.expand(state.z, q_);
+  system_.expand_rate(state.w, v_);
+  system_.jacobian(q_, jacobian_, scratch_);
+  f_.setZero();
+  if (state.tension.size() > 0) {
+    system_.add_other_force(state.t, q_, v_, state.tension, 1.0, f_);
+    system_.add_giving_rod_forces(q_, state.tension, 1.0, f_);
+  } else {
+    system_.add_applied_force(state.t, q_, v_, 1.0, f_);
+  }
+  system_.reduce_force(f_, force_);
+  force_ -= system_.mass() * acceleration;
+  system_.constraint_bias(state.t, q_, v_, bias_);
+  bias_ = -bias_ - jacobian_ * acceleration;
+  rows_of_free_ = among(jacobian_, rows_, place_, n);
+  if (!saddle_->factorise(rows_of_free_)) return false;
+  VectorXd a(n), multipliers(std::ssize(rows_));
+  saddle_->solve(force_(free_), bias_(rows_), a, multipliers);
+  acceleration(free_) = a;
+  lambda(rows_) = multipliers;
+  return a.allFinite() && multipliers.allFinite();
+}
+
+VectorXd FreeMotion::felt(const State& state, const VectorXd& acceleration, const VectorXd& lambda) {
+  VectorXd of_rows = VectorXd::Zero(lambda.size()), of_free = VectorXd::Zero(acceleration.size());
+  of_rows(rows_) = lambda(rows_);
+  of_free(free_) = acceleration(free_);
+  system_.expand(state.z, q_);
+  system_.jacobian(q_, jacobian_, scratch_);
+  return jacobian_.transpose() * of_rows + system_.mass() * of_free;
+}
+
 bool FreeMotion::slope(double t, const VectorXd& y, VectorXd& out) {
   if (--left_ < 0) return false;
   const Index n = std::ssize(free_);
   (*led_)(t, state_, acceleration_);
   put(y, state_);
-  acceleration_(free_).setZero();
-  system_.expand(state_.z, q_);
-  system_.expand_rate(state_.w, v_);
-  system_.jacobian(q_, jacobian_, scratch_);
-  f_.setZero();
-  system_.add_applied_force(t, q_, v_, 1.0, f_);
-  system_.reduce_force(f_, force_);
-  force_ -= system_.mass() * acceleration_;
-  system_.constraint_bias(t, q_, v_, bias_);
-  bias_ = -bias_ - jacobian_ * acceleration_;
-  rows_of_free_ = among(jacobian_, rows_, place_, n);
-  if (!saddle_->factorise(rows_of_free_)) return false;
-  VectorXd a(n), lambda(std::ssize(rows_));
-  saddle_->solve(force_(free_), bias_(rows_), a, lambda);
+  state_.t = t;
+  if (!solve(state_, acceleration_, lambda_)) return false;
   out.resize(2 * n);
-  out << y.tail(n), a;
-  return out.allFinite();
+  out << y.tail(n), acceleration_(free_);
+  return true;
 }
 
 // Gragg's midpoint rule with 2, 4, 6, ... parts, extrapolated to none.

@@ -23,12 +23,17 @@ class FreeMotion {
   FreeMotion(const System& system, std::vector<Index> free);
 
   const std::vector<Index>& coordinates() const { return free_; }
+  const std::vector<int>& rows() const { return rows_; }  // the constraints that it takes part in
 
   // Coordinates and rates of what is led, and its accelerations, at a time.
   using Led = std::function<void(double t, State& state, VectorXd& acceleration)>;
   // From a state to the time `end`, through `edges` at which forces are not smooth: what is free of it.
   // Returns how far that may be off, in coordinates [m]; infinite where it is not found.
   double move(State& state, double end, const std::vector<double>& edges, const Led& led);
+  // Its accelerations in a state, beside those of what is led, and the multipliers of its rows.
+  bool solve(const State& state, VectorXd& acceleration, VectorXd& lambda);
+  // What the rest feels of it then: by those rows, and by inertia that both share.
+  VectorXd felt(const State& state, const VectorXd& acceleration, const VectorXd& lambda);
 
  private:
   bool slope(double t, const VectorXd& y, VectorXd& out);
@@ -47,7 +52,7 @@ class FreeMotion {
   int left_ = 0;  // evaluations
   double size_ = 0;
   State state_;
-  VectorXd acceleration_, q_, v_, f_, force_, bias_;
+  VectorXd acceleration_, lambda_, q_, v_, f_, force_, bias_;
 };
 
 }  // namespace unfurl
