@@ -253,14 +253,20 @@ void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness
   std::vector<char> open(d.t.size(), 0);
   mark_rods(trajectory, uniqueness, doubtful, d, open);
   mark_reactions(trajectory, uniqueness, open, d);
-  for (const DriveChannel& drive : drive_channels(trajectory.model()))
-    if (std::vector<double>* const column =
-            values_of(d, drive.name() + (drive.angle() ? ".torque_unique" : ".force_unique")))
-      for (std::size_t i = 0; const char waves : driven_by_waves(trajectory, drive, d)) {
-        const bool unique = drive.unique(trajectory.model(i), open[i] ? none : uniqueness.at(i)) &&
-                            uniqueness.unique_without_row(i, drive.cable());
-        (*column)[i++] = unique && !waves ? 1.0 : 0.0;
-      }
+  for (const DriveChannel& drive : drive_channels(trajectory.model())) {
+    const bool angle = drive.angle();
+    std::vector<double>* const column =
+        values_of(d, drive.name() + (angle ? ".torque_unique" : ".force_unique"));
+    if (!column) continue;
+    const std::vector<double>* const effort =
+        values_of(d, drive.name() + (angle ? ".torque_N_m" : ".force_N"));
+    for (std::size_t i = 0; const char waves : driven_by_waves(trajectory, drive, d)) {
+      const bool unique = drive.unique(trajectory.model(i), open[i] ? none : uniqueness.at(i)) &&
+                          uniqueness.unique_without_row(i, drive.cable());
+      const bool known = !effort || !trajectory.report(i).singular_event || !std::isnan((*effort)[i]);
+      (*column)[i++] = unique && known && !waves ? 1.0 : 0.0;
+    }
+  }
 }
 
 void leave_unique_open(Diagnostics& d) {

@@ -15,4 +15,18 @@ double lagrange_weight(std::size_t a, std::size_t points, double t, const TimeOf
   return out;
 }
 
+// The same of that polynomial's slope there.
+template <class TimeOf>
+double lagrange_slope(std::size_t a, std::size_t points, double t, const TimeOf& time) {
+  double out = 0;
+  for (std::size_t c = 0; c < points; ++c) {
+    if (c == a) continue;
+    double product = 1 / (time(a) - time(c));
+    for (std::size_t b = 0; b < points; ++b)
+      if (b != a && b != c) product *= (t - time(b)) / (time(a) - time(b));
+    out += product;
+  }
+  return out;
+}
+
 }  // namespace unfurl

@@ -89,7 +89,7 @@ class Locator {
     out.t = t;
     out.z = at_zero(samples_, shares, &State::z);
     out.w = at_zero(samples_, shares, &State::w);
-    extrapolate_tension(out);
+    tension_at_zero(system(), samples_, out);
     if (!out.z.allFinite()) return std::nullopt;
     fit(out);
     samples_ = {};
@@ -150,54 +150,11 @@ class Locator {
                    lower = at_zero(samples_, shares_at_zero(samples_, most - 1), &State::w);
     const double of_rates = (w - lower).lpNorm<Eigen::Infinity>() / w.lpNorm<Eigen::Infinity>();
     if (system().giving_rods().empty()) return of_rates;
-    const MatrixXd tension = tensions();
+    const MatrixXd tension = tensions(system(), samples_);
     const double of_forces = (tension * (shares_at_zero(samples_, most) - shares_at_zero(samples_, most - 1)))
                                  .lpNorm<Eigen::Infinity>() /
                              tension.lpNorm<Eigen::Infinity>();
     return std::max(of_rates, smooth_enough / smooth_force * of_forces);
-  }
-
-  // Axial forces of the rods that give [rods x samples].
-  MatrixXd tensions() {
-    MatrixXd out(std::ssize(system().giving_rods()), std::ssize(samples_));
-    q_.resize(system().coordinates());
-    v_.resize(q_.size());
-    for (Index i = 0; i < out.cols(); ++i) {
-      const State& state = samples_[static_cast<std::size_t>(i)].state;
-      VectorXd tension = state.tension;
-      if (tension.size() == 0) {
-        system().expand(state.z, q_);
-        system().expand_rate(state.w, v_);
-        tension.resize(out.rows());
-        system().giving_rod_forces(state.t, q_, v_, tension);
-      }
-      out.col(i) = tension;
-    }
-    return out;
-  }
-
-  // Rods that give do so in waves, which no polynomial in the sine may follow: of the degree from which on
-  // it matters least, and in doubt by what higher ones say besides, or what the samples are in doubt by.
-  void extrapolate_tension(State& out) {
-    out.tension.resize(0), out.tension_error.resize(0);
-    if (system().giving_rods().empty()) return;
-    const MatrixXd tension = tensions();
-    std::vector<VectorXd> fits;
-    fits.reserve(samples_.size());
-    for (int degree = 0; degree < static_cast<int>(samples_.size()); ++degree)
-      fits.push_back(tension * shares_at_zero(samples_, degree));
-    std::size_t best = fits.size() - 1;
-    const auto change = [&](std::size_t degree) { return (fits[degree] - fits[degree - 1]).norm(); };
-    for (std::size_t degree = best; degree >= 2; --degree)
-      if (change(degree) < change(best)) best = degree;
-    out.tension = fits[best];
-    out.tension_error = VectorXd::Zero(out.tension.size());
-    for (std::size_t degree = best - 1; degree < fits.size(); ++degree)
-      out.tension_error = out.tension_error.cwiseMax((fits[degree] - fits[best]).cwiseAbs());
-    VectorXd of_samples = VectorXd::Zero(out.tension.size());
-    for (const Sample& sample : samples_)
-      if (sample.state.tension_error.size() > 0) of_samples = of_samples.cwiseMax(sample.state.tension_error);
-    out.tension_error += of_samples;
   }
 
   double reach(double far, double most_uneven) {
@@ -352,7 +309,7 @@ class Locator {
       out.t += shares[static_cast<Index>(i)] * samples_[i].state.t;
     out.z = at_zero(samples_, shares, &State::z);
     out.w = at_zero(samples_, shares, &State::w);
-    extrapolate_tension(out);
+    tension_at_zero(system(), samples_, out);
     if (!std::isfinite(out.t) || !out.z.allFinite()) return std::nullopt;
     fit(out);
     followed_.follow(samples_.front().state);

@@ -41,6 +41,13 @@ struct NearDeployed {
 // Shares of the samples in the value at zero of the polynomial of `degree` in the sine that fits them best.
 VectorXd shares_at_zero(const std::vector<NearDeployed>& samples, int degree);
 
+// Axial forces of the rods that give [rods x samples].
+MatrixXd tensions(const System& system, const std::vector<NearDeployed>& samples);
+// The same at zero, with what they may be off by. They go in waves, which no polynomial in the sine may
+// follow: of the degree from which on it matters least, and in doubt by what higher ones say besides, or what
+// the samples are in doubt by.
+void tension_at_zero(const System& system, const std::vector<NearDeployed>& samples, State& out);
+
 // The multipliers in the deployed pose, from those of such poses, the farthest one first, and its equations.
 // The pose itself is as good as any for all of the multipliers but what its loss of rank leaves open. Of
 // that a fit of low degree is truer than interpolation where round-off, d / sine^4, is more than what the

@@ -24,6 +24,46 @@ VectorXd shares_at_zero(const std::vector<NearDeployed>& samples, int degree) {
   // The first row of the pseudo-inverse.
   return weight.cwiseProduct(least_squares(powers.transpose(), VectorXd::Unit(degree + 1, 0)));
 }
+
+MatrixXd tensions(const System& system, const std::vector<NearDeployed>& samples) {
+  MatrixXd out(std::ssize(system.giving_rods()), std::ssize(samples));
+  VectorXd q(system.coordinates()), v(q.size());
+  for (Index i = 0; i < out.cols(); ++i) {
+    const State& state = samples[static_cast<std::size_t>(i)].state;
+    VectorXd tension = state.tension;
+    if (tension.size() == 0) {
+      system.expand(state.z, q);
+      system.expand_rate(state.w, v);
+      tension.resize(out.rows());
+      system.giving_rod_forces(state.t, q, v, tension);
+    }
+    out.col(i) = tension;
+  }
+  return out;
+}
+
+void tension_at_zero(const System& system, const std::vector<NearDeployed>& samples, State& out) {
+  out.tension.resize(0), out.tension_error.resize(0);
+  if (system.giving_rods().empty()) return;
+  const MatrixXd tension = tensions(system, samples);
+  std::vector<VectorXd> fits;
+  fits.reserve(samples.size());
+  for (int degree = 0; degree < static_cast<int>(samples.size()); ++degree)
+    fits.push_back(tension * shares_at_zero(samples, degree));
+  std::size_t best = fits.size() - 1;
+  const auto change = [&](std::size_t degree) { return (fits[degree] - fits[degree - 1]).norm(); };
+  for (std::size_t degree = best; degree >= 2; --degree)
+    if (change(degree) < change(best)) best = degree;
+  out.tension = fits[best];
+  out.tension_error = VectorXd::Zero(out.tension.size());
+  for (std::size_t degree = best - 1; degree < fits.size(); ++degree)
+    out.tension_error = out.tension_error.cwiseMax((fits[degree] - fits[best]).cwiseAbs());
+  VectorXd of_samples = VectorXd::Zero(out.tension.size());
+  for (const NearDeployed& sample : samples)
+    if (sample.state.tension_error.size() > 0) of_samples = of_samples.cwiseMax(sample.state.tension_error);
+  out.tension_error += of_samples;
+}
+
 namespace {
 
 // A share of the multipliers that poses next to the deployed one must agree to.

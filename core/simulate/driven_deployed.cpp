@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -206,6 +207,7 @@ class DrivenLocator {
   // polynomials have it. Returns how far it may be off.
   double move_free(State& out, const DrivenStates& samples) {
     const std::vector<Index>& free = free_.coordinates();
+    if (std::ranges::any_of(samples, [](const State& s) { return s.tension.size() > 0; })) pull(out, samples);
     if (free.empty()) return 0;
     std::size_t from = 0;
     for (std::size_t i = 1; i < samples.size() && samples[i].t < out.t; ++i)
@@ -225,6 +227,7 @@ class DrivenLocator {
         return error;
       }
     }
+    pull(out, samples);
     VectorXd of = VectorXd::Zero(out.z.size());
     of(free).setOnes();
     double least = std::numeric_limits<double>::infinity();
@@ -341,17 +344,9 @@ class DrivenLocator {
   // The slope of the polynomial through their rates.
   static VectorXd acceleration_at(double t, const DrivenStates& samples) {
     VectorXd out = VectorXd::Zero(samples.front().w.size());
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      double slope = 0;
-      for (std::size_t m = 0; m < samples.size(); ++m) {
-        if (m == k) continue;
-        double product = 1 / (samples[k].t - samples[m].t);
-        for (std::size_t i = 0; i < samples.size(); ++i)
-          if (i != k && i != m) product *= (t - samples[i].t) / (samples[k].t - samples[i].t);
-        slope += product;
-      }
-      out += slope * samples[k].w;
-    }
+    const auto time = [&](std::size_t i) { return samples[i].t; };
+    for (std::size_t k = 0; k < samples.size(); ++k)
+      out += lagrange_slope(k, samples.size(), t, time) * samples[k].w;
     return out;
   }
 
@@ -360,10 +355,7 @@ class DrivenLocator {
     std::vector<double> values;
     for (const State& sample : samples) values.push_back(left(sample));
     const auto remains = [&](double t) {
-      const std::vector<double> share = weights(t, samples);
-      double sum = 0;
-      for (std::size_t k = 0; k < values.size(); ++k) sum += share[k] * values[k];
-      return sum;
+      return std::inner_product(values.begin(), values.end(), weights(t, samples).begin(), 0.0);
     };
     if (samples.back().t < edge_ && pose_rests_) {
       State there = at(edge_, samples);
@@ -386,15 +378,11 @@ class DrivenLocator {
     State out = samples.back();
     out.t = t;
     out.z.setZero(), out.w.setZero();
-    out.stage_tension.resize(0, 0), out.tension_error.resize(0);
-    const bool pull =
-        std::ranges::all_of(samples, [&](const State& s) { return s.tension.size() == out.tension.size(); });
-    out.tension.setZero(pull ? out.tension.size() : 0);
+    out.stage_tension.resize(0, 0), out.tension.resize(0), out.tension_error.resize(0);
     for (std::size_t k = 0; k < samples.size(); ++k) {
       out.z += share[k] * samples[k].z;
       out.w += share[k] * samples[k].w;
       if (t == edge_) out.w -= share[k] * samples[k].driven.cwiseProduct(rests_);
-      if (out.tension.size() > 0) out.tension += share[k] * samples[k].tension;
     }
     return out;
   }
@@ -411,6 +399,13 @@ class DrivenLocator {
       out = at(std::min(out.t + later, before_jump(edge_)), samples);
     }
     return out;
+  }
+
+  // What rods that give pull with there.
+  void pull(State& out, const DrivenStates& samples) const {
+    std::vector<NearDeployed> near;
+    for (const State& sample : samples) near.push_back({out.t - sample.t, sample});
+    tension_at_zero(system_, near, out);
   }
 
   // On the constraints at its time, with multipliers from poses before it: functions of time where the pose
