@@ -150,12 +150,19 @@ VectorXd best_known(std::vector<VectorXd>& fits, const Known& bounded) {
   return known_of(fits[best], bounded && change <= most_off * fits[best].lpNorm<Eigen::Infinity>());
 }
 
+// Do they grow towards the pose, and that far from it, where round-off is no matter?
+bool grow(const std::vector<NearDeployed>& samples) {
+  constexpr double much = 1.5;
+  const auto size = [&](std::size_t i) { return samples[i].state.lambda.norm(); };
+  return size(samples.size() / 2) > much * size(0);
+}
+
 }  // namespace
 
-// By the equations of the pose, with what acts just before it. Beyond that, where fits that settle by
-// themselves say something else than those that the equations have corrected, they are right. Where
-// multipliers grow without bound, the equations of the pose lack what is left of them times a Jacobian that
-// vanishes.
+// By the equations of the pose, with what acts just before it. Where nothing settles of what grows, nothing
+// is known. Beyond that, where fits that settle by themselves say something else than those that the
+// equations have corrected, they are right. Where multipliers grow without bound, the equations of the pose
+// lack what is left of them times a Jacobian that vanishes.
 VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at,
                                  int poles) {
   constexpr double something_else = 1e-3, grows = 1e-4, wild = 10;
@@ -167,15 +174,17 @@ VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> sampl
     for (NearDeployed& sample : samples) sample.state.lambda -= c / std::pow(sample.sine, order);
   }
   std::vector<VectorXd> own = multiplier_fits(samples, 0);
+  if (!bounded.all()) return best_known(own, bounded);
+  const std::size_t nearest = settled_fit(own, std::numeric_limits<double>::infinity());
+  const double open = (own[nearest] - own[nearest - 1]).norm();
+  if (open > something_else * own[nearest].norm() && grow(samples)) return known_of(own[nearest], !bounded);
   const std::size_t by_itself = settled_fit(own, most_open * own.back().norm());
-  if (!bounded.all()) return by_itself > 0 ? known_of(own[by_itself], bounded) : best_known(own, bounded);
   std::vector<VectorXd> fits = own;
   index1.correct(at, fits, other_force_before(index1, samples, at));
   const std::size_t best = settled_fit(fits, most_open * fits[0].norm());
   // Where the pose is so near to losing more of its rank that the equations say anything, they are left out.
   double next_to = 0;
   for (const NearDeployed& sample : samples) next_to = std::max(next_to, sample.state.lambda.norm());
-  const std::size_t nearest = settled_fit(own, std::numeric_limits<double>::infinity());
   if (!((fits[best] - own[nearest]).norm() <= wild * next_to)) return own[nearest];
   const bool differ =
       by_itself > 0 && (fits[best] - own[by_itself]).norm() > something_else * own[by_itself].norm();
