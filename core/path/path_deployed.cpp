@@ -32,27 +32,37 @@ std::optional<double> time_at_sine(const PathWatch& watch, const PathMotion& mot
 
 void limit_multipliers(System followed, const PathWatch& watch, const PathMotion& motion, double step,
                        const std::function<State(double t, double s, double v)>& state, State& event) {
-  constexpr double farthest = 3e-2, span = 12, from_start = 0.25;
-  constexpr int count = 9;
+  constexpr double farthest = 3e-2, span = 12, from_start = 0.25, slow = 1e-3;
+  constexpr int count = 9, poles = 3;
   const double start = std::abs(watch.remaining(0.0));
   const double far = std::min(farthest, from_start * start);
   Index1 index1(followed, true);
   std::vector<NearDeployed> samples;
   VectorXd a(event.z.size());
+  double s = 0, v = 0;
+  const std::optional<double> from = time_at_sine(watch, motion, step, far);
+  bool rests = false;
+  if (from) {
+    motion.at(*from, s, v);
+    const double speed = std::abs(v);
+    motion.at(event.t, s, v);
+    rests = std::abs(v) < slow * speed;
+  }
   for (int i = 0; i < count; ++i) {
     const double u = 0.5 - 0.5 * std::cos(pi * (i + 0.5) / count);
-    const auto t = time_at_sine(watch, motion, step, far + u * (far / span - far));
+    const double share = 1 + u * (1 / span - 1);
+    const auto t = rests ? event.t - share * (event.t - *from)
+                         : time_at_sine(watch, motion, step, far + u * (far / span - far));
     if (!t) continue;
-    double s = 0, v = 0;
     motion.at(*t, s, v);
     State near = state(*t, s, v);
     followed.follow(near);
     if (index1.evaluate(*t, near.z, near.w, a, near.lambda))
-      samples.push_back({watch.remaining(s), std::move(near)});
+      samples.push_back({rests ? event.t - *t : watch.remaining(s), std::move(near)});
   }
   if (samples.size() < 3) return;
   followed.follow(event);
-  event.lambda = multipliers_at_deployed(index1, samples, event);
+  event.lambda = multipliers_at_deployed(index1, samples, event, rests ? poles : 1);
 }
 
 }  // namespace unfurl

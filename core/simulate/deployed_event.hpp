@@ -53,7 +53,8 @@ void tension_at_zero(const System& system, const std::vector<NearDeployed>& samp
 // that a fit of low degree is truer than interpolation where round-off, d / sine^4, is more than what the
 // degree leaves: the degree at which it changes least. Where even that is not known, what is left open is
 // chosen as for any multipliers that are not unique: least norm.
-// NaN where they grow without bound towards the pose, at most like sine^-poles.
+// NaN where they grow without bound towards the pose, at most like sine^-poles, or grow and settle to
+// nothing.
 VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at,
                                  int poles = 1);
 

@@ -141,13 +141,18 @@ VectorXd known_of(const VectorXd& lambda, const Known& known) {
   return known.select(lambda.array(), std::numeric_limits<double>::quiet_NaN());
 }
 
-// Of those that are bounded, beside which nothing is left of the others: what they settle to best.
-VectorXd best_known(std::vector<VectorXd>& fits, const Known& bounded) {
-  constexpr double most_off = 1e-3;
-  for (VectorXd& fit : fits) fit = bounded.select(fit, 0.0);
+// What those that are bounded settle to best, with nothing of the others beside them.
+VectorXd best_known(std::vector<NearDeployed>& samples, const Known& bounded) {
+  constexpr double most_off = 1e-3;  // of what they are next to the pose
+  double size = 0;
+  for (NearDeployed& sample : samples) {
+    sample.state.lambda = bounded.select(sample.state.lambda, 0.0);
+    size = std::max(size, sample.state.lambda.lpNorm<Eigen::Infinity>());
+  }
+  const std::vector<VectorXd> fits = multiplier_fits(samples, 0);
   const std::size_t best = settled_fit(fits, std::numeric_limits<double>::infinity());
   const auto change = (fits[best] - fits[best - 1]).array().abs();
-  return known_of(fits[best], bounded && change <= most_off * fits[best].lpNorm<Eigen::Infinity>());
+  return known_of(fits[best], bounded && change <= most_off * size);
 }
 
 // Do they grow towards the pose, and that far from it, where round-off is no matter?
@@ -173,8 +178,8 @@ VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> sampl
     bounded = bounded && c.array().abs() <= grows * c.lpNorm<Eigen::Infinity>();
     for (NearDeployed& sample : samples) sample.state.lambda -= c / std::pow(sample.sine, order);
   }
-  std::vector<VectorXd> own = multiplier_fits(samples, 0);
-  if (!bounded.all()) return best_known(own, bounded);
+  if (!bounded.all()) return best_known(samples, bounded);
+  const std::vector<VectorXd> own = multiplier_fits(samples, 0);
   const std::size_t nearest = settled_fit(own, std::numeric_limits<double>::infinity());
   const double open = (own[nearest] - own[nearest - 1]).norm();
   if (open > something_else * own[nearest].norm() && grow(samples)) return known_of(own[nearest], !bounded);
