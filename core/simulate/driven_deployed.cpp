@@ -358,10 +358,11 @@ class DrivenLocator {
       return std::inner_product(values.begin(), values.end(), weights(t, samples).begin(), 0.0);
     };
     if (samples.back().t < edge_ && pose_rests_) {
+      // On the constraints, or, where rounding has what is left move in a weak mode, as the samples have it.
       State there = at(edge_, samples);
       system_.follow(samples.back());
       project(system_, there);
-      if (std::abs(left(there)) < nothing_left) return edge_;
+      if (std::min(std::abs(left(there)), std::abs(remains(edge_))) < nothing_left) return edge_;
     }
     double low = trajectory_.end_time(), high = std::min(edge_, guess_ + h_);
     if (!(remains(low) > 0) || !(remains(high) <= 0)) return std::nullopt;

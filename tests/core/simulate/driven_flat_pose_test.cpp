@@ -35,8 +35,8 @@ std::string linkage(const std::string& to, double gravity, const std::string& no
 [structure]
 kind = "custom"
 nodes = [{name = "X", position = [9, 0, 0], fixed = true}, {name = "A0", position = [0, 0, 0], fixed = true},
-  {name = "B0", position = ["=cos(60*deg)", 0, "=sin(60*deg)"]}, {name = "A1", position = [0.7, 0, 0], fixed = true},
-  {name = "B1", position = ["=0.7+cos(60*deg)", 0, "=sin(60*deg)"]})toml" +
+  {name = "B0", position = [0.5, 0, 0.8660254037844386]}, {name = "A1", position = [0.7, 0, 0], fixed = true},
+  {name = "B1", position = [1.2, 0, 0.8660254037844386]})toml" +
          nodes + R"(]
 rods = [{nodes = ["A0", "B0"], mass = 1}, {nodes = ["A1", "B1"], mass = 1}, {nodes = ["B0", "B1"], mass = 1})" +
          rods + R"(]
@@ -158,8 +158,7 @@ Eigen::Vector2d swung(bool pulled) {
 }  // namespace
 
 TEST_CASE("a payload on what a drive lays flat is where it swings to") {
-  const std::string nodes =
-      R"toml(, {name = "Q", position = ["=0.7+cos(60*deg)", 0, "=sin(60*deg)-0.5"], mass = 0.5})toml";
+  const std::string nodes = R"toml(, {name = "Q", position = [1.2, 0, 0.3660254037844386], mass = 0.5})toml";
   for (const bool pulled : {false, true}) {
     const Eigen::Vector2d y = swung(pulled);
     const Vec3 at(1.7 + length * std::sin(y[0]), 0, -length * std::cos(y[0])),
@@ -225,8 +224,8 @@ std::string afloat(const std::string& nodes = "", const std::string& rods = "",
                    const std::string& rest = "") {
   return R"toml([structure]
 kind = "custom"
-nodes = [{name = "A0", position = [0, 0, 0], mass = 3}, {name = "B0", position = ["=cos(60*deg)", 0, "=sin(60*deg)"]},
-  {name = "A1", position = [0.7, 0, 0], mass = 2}, {name = "B1", position = ["=0.7+cos(60*deg)", 0, "=sin(60*deg)"]},
+nodes = [{name = "A0", position = [0, 0, 0], mass = 3}, {name = "B0", position = [0.5, 0, 0.8660254037844386]},
+  {name = "A1", position = [0.7, 0, 0], mass = 2}, {name = "B1", position = [1.2, 0, 0.8660254037844386]},
   {name = "W", position = [0, 0, -5], fixed = true}, {name = "S", position = [1.1, 0, -5], mass = 1})toml" +
          nodes + R"(]
 rods = [{nodes = ["A0", "B0"], mass = 1}, {nodes = ["A1", "B1"], mass = 1}, {nodes = ["B0", "B1"], mass = 1},
@@ -268,7 +267,7 @@ TEST_CASE("what swings beside a floating linkage that a drive lays flat takes no
 // The linkage that a payload on a stiff hinge shakes is nothing that drives alone move.
 TEST_CASE("what is not known of a flat pose to which a drive leads is told") {
   const std::string scene =
-      afloat(R"toml(, {name = "P", position = ["=0.7+cos(60*deg)", 0, "=sin(60*deg)-0.5"], mass = 0.1})toml",
+      afloat(R"toml(, {name = "P", position = [1.2, 0, 0.3660254037844386], mass = 0.1})toml",
              R"(, {nodes = ["B1", "P"], mass = 0})",
              "\n[[forces]]\nkind = \"torsion_spring\"\nnodes = [\"A1\", \"B1\", \"P\"]\nstiffness = 30\n"
              "free_angle = 90\n[[constraints]]\nkind = \"plane\"\nnodes = [\"P\"]\nnormal = [0, 1, 0]\n");
@@ -415,6 +414,53 @@ TEST_CASE("a ring whose mean angle a motor leads is deployed when that has come 
   const Simulation run = simulate(build_model(scene), scene.solver);
   CHECK(run.status == RunStatus::deployed);
   CHECK(deployed_at(run) == Approx(5).epsilon(1e-14));
+}
+
+TEST_CASE(
+    "a linkage is deployed when its drive has come to its end, by whichever of its nodes that is told") {
+  // The second crank of a parallelogram is as high as the first one, which is led to z = 0: a height of 1e-8
+  // is rounding in the flat pose, and 4 ms of the motion before it.
+  const char* const cranks = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A0", position = [0, 0, 0], fixed = true}, {name = "A1", position = [0.7, 0, 0], fixed = true},
+         {name = "B0", position = [0.5, 0, 0.8660254037844386]},
+         {name = "B1", position = [1.2, 0, 0.8660254037844386]},
+         {name = "P", position = [1.2, 0, 0.3660254037844386], mass = 0.5}]
+rods = [{nodes = ["A0", "B0"], mass = 1}, {nodes = ["A1", "B1"], mass = 1}, {nodes = ["B0", "B1"], mass = 1},
+        {nodes = ["B1", "P"], mass = 0}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["B*", "P"]
+normal = [0, 1, 0]
+[gravity]
+acceleration = [0, 0, -9.81]
+[[constraints]]
+kind = "coordinate"
+name = "m"
+nodes = ["B0"]
+direction = [0, 0, 1]
+motion = "smooth"
+to = 0
+duration = 0.5
+[deployment]
+deployed = 0
+[solver]
+end_time = 0.8
+)";
+  for (const char* node : {"B0", "B1"})
+    for (const char* step : {"0.01", "0.02"})
+      for (const char* stages : {"3", "4"}) {
+        const Simulation run = testing::run_scene(
+            cranks, {std::string("deployment.measure=\"coordinate ") + node + " along 0 0 1\"",
+                     std::string("solver.step=") + step, std::string("solver.stages=") + stages});
+        CAPTURE(node, step, stages, run.message);
+        REQUIRE(run.status == RunStatus::deployed);
+        CHECK(run.trajectory.end_time() == Approx(0.5).epsilon(1e-12));
+        // What rounding leaves of a height there.
+        const VectorXd q = testing::end_positions(run);
+        CHECK(std::abs(q[3 * 3 + 2]) < 1e-7);
+      }
 }
 
 }  // namespace driven_flat_pose_test
