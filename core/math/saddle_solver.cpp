@@ -21,7 +21,7 @@ void SaddleSolver::Factors::analyse(const SparseRows& upper, const std::vector<i
 struct SaddleSolver::Analysis {
   Analysis(const SparseRows& mass, const SparseRows& jacobian, Order how, const VectorXd& column_scale);
   bool is_of(const SparseRows& mass, const SparseRows& jacobian, Order how) const {
-    return order == how && same(M, mass) && same(G, jacobian);
+    return (order == how || how == Order::safe) && same(M, mass) && same(G, jacobian);
   }
   static bool same(const SparseRows& a, const SparseRows& b) {
     const auto equal = [](const auto* x, const auto* y, Index size) { return std::equal(x, x + size, y); };
@@ -30,19 +30,19 @@ struct SaddleSolver::Analysis {
            equal(a.innerIndexPtr(), b.innerIndexPtr(), a.nonZeros()) &&
            equal(a.valuePtr(), b.valuePtr(), a.nonZeros());
   }
-  // Of this thread: one model has several solvers at a time, and again and again.
+  // Of this thread: one model has several solvers at a time, and again and again. Of large ones the last.
   static std::shared_ptr<const Analysis> shared(const SparseRows& M, const SparseRows& G, Order order,
                                                 const VectorXd& column_scale) {
     constexpr Index most_kept = 50000;  // entries of factors: a few MB
     thread_local std::array<std::shared_ptr<const Analysis>, 4> recent;
+    thread_local std::shared_ptr<const Analysis> large;
     for (const auto& known : recent)
       if (known && known->is_of(M, G, order)) return known;
+    if (large && large->is_of(M, G, order)) return large;
     auto made = std::make_shared<const Analysis>(M, G, order, column_scale);
-    if (made->safe.ldlt.factor_nonzeros() <= most_kept) {
-      std::rotate(recent.begin(), recent.end() - 1, recent.end());
-      recent.front() = made;
-    }
-    return made;
+    if (made->safe.ldlt.factor_nonzeros() > most_kept) return large = made;
+    std::rotate(recent.begin(), recent.end() - 1, recent.end());
+    return recent.front() = made;
   }
 
   SparseRows M, G;
@@ -94,7 +94,7 @@ SaddleSolver::SaddleSolver(const SparseRows& M, const SparseRows& G, int max_col
   for (Index i = 0; i < n_; ++i) column_scale_[i] = 1.0 / std::sqrt(M.coeff(i, i));
   const std::shared_ptr<const Analysis> known = Analysis::shared(M, G, order, column_scale_);
   safe_ = known->safe;
-  if (known->sparse) sparse_ = std::make_unique<Factors>(*known->sparse);
+  if (known->sparse && order == Order::sparse_first) sparse_ = std::make_unique<Factors>(*known->sparse);
   jacobian_place_ = known->jacobian_place;
   const SparseRows& upper = known->upper;
   values_.assign(upper.valuePtr(), upper.valuePtr() + upper.nonZeros());
