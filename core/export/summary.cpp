@@ -67,11 +67,13 @@ Json drives_json(const Simulation& run, const Diagnostics& diagnostics) {
   return object;
 }
 
+// No two have one name, which is not looked for among those before it.
 Json by_node(const Structure& structure, const VectorXd& x) {
   Json object = Json::object();
+  auto& members = object.get_ref<Json::object_t&>();
   for (std::size_t i = 0; i < structure.node_copies.size(); ++i) {
     const auto at = static_cast<Index>(3 * i);
-    object[structure.node_copies[i].name] = {x[at], x[at + 1], x[at + 2]};
+    members.emplace_back(structure.node_copies[i].name, Json{x[at], x[at + 1], x[at + 2]});
   }
   return object;
 }

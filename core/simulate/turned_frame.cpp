@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/math/singular_values.hpp"
 #include "core/simulate/run_words.hpp"
@@ -20,14 +21,12 @@ MatrixXd about_centre(const VectorXd& q) {
 
 // Of a rigid body that is held like this at x, about the centre: rows that its three translations and three
 // rotations must give zero.
-void add_rows(const Constraint& c, const Vec3& x, MatrixXd& rows) {
+void set_rows(const Constraint& c, const Vec3& x, MatrixXd& rows, Index at) {
   Mat3 held = Mat3::Identity();
   if (c.kind != "fixed") {
     const Vec3 n = c.vectors[0].normalized();
     held = c.kind == "plane" ? Mat3(n * n.transpose()) : Mat3(held - n * n.transpose());
   }
-  const Index at = rows.rows();
-  rows.conservativeResize(at + 3, Eigen::NoChange);
   for (int k = 0; k < 3; ++k) {
     rows.block<3, 1>(at, k) = held.col(k);
     rows.block<3, 1>(at, 3 + k) = held * Vec3::Unit(k).cross(x);
@@ -36,13 +35,16 @@ void add_rows(const Constraint& c, const Vec3& x, MatrixXd& rows) {
 
 // Whether supports of single nodes leave the whole a rotation; planes of symmetry do not hold a ring.
 bool can_turn(const Structure& structure, const MatrixXd& about) {
-  MatrixXd rows(0, 6);
   const double size = std::max(about.lpNorm<Eigen::Infinity>(), 1e-300);
+  std::vector<const Constraint*> supports;
   for (const Constraint& c : structure.constraints)
     if ((c.kind == "fixed" || c.kind == "plane" || c.kind == "line") && c.nodes.size() == 1 &&
         c.nodes[0] < about.cols())
-      add_rows(c, about.col(c.nodes[0]) / size, rows);
-  if (rows.rows() == 0) return true;
+      supports.push_back(&c);
+  if (supports.empty()) return true;
+  MatrixXd rows(3 * static_cast<Index>(supports.size()), 6);
+  for (std::size_t k = 0; k < supports.size(); ++k)
+    set_rows(*supports[k], about.col(supports[k]->nodes[0]) / size, rows, 3 * static_cast<Index>(k));
   const auto rank = [](const MatrixXd& A) {
     return (singular_values(A).array() > 1e-9).count();  // entries are of size 1
   };

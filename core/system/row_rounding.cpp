@@ -102,12 +102,13 @@ void System::find_implied_rows() {
   std::vector<double> scratch;
   std::vector<Eigen::Triplet<double>> entries;
   const VectorXd start = reduce(d.start);
+  const double far = d.lengths.maxCoeff();
   VectorXd q(d.coordinates), z(n), whole(d.rows);
   std::vector<double> before;
   for (int pose = 0; pose < 2; ++pose) {
     before.swap(scratch);
     for (Index i = 0; i < n; ++i)
-      z[i] = start[i] + d.lengths.maxCoeff() * std::cos(1.0 + pose + (2.3 + pose) * static_cast<double>(i));
+      z[i] = start[i] + far * std::cos(1.0 + pose + (2.3 + pose) * static_cast<double>(i));
     expand(z, q);
     jacobian(q, G, scratch);
     const double* entry = scratch.data();
