@@ -64,6 +64,21 @@ struct PeakSamples {
       if (k == 0 || found[k].first >= best) out.push_back(found[k].second);
     return out;
   }
+  // Whether there is no more to be found beside value k than rounding of it: its neighbours are the same; or
+  // it is at an end, to which the values rise on a polynomial through five of them, within a thousandth of
+  // the last rise.
+  bool is_known(std::size_t k) const {
+    constexpr double round_off = 1e-9, on_polynomial = 1e-3;
+    const auto flat = [&](std::size_t j) { return std::abs(x[k] - x[j]) <= round_off * std::abs(x[k]); };
+    const std::size_t last = x.size() - 1;
+    if ((k == 0 || flat(k - 1)) && (k == last || flat(k + 1))) return true;
+    if (last < 4 || (k > 0 && k < last)) return false;
+    std::array<double, 5> d{};  // backward differences
+    for (std::size_t j = 0; j < d.size(); ++j) d[j] = x[k > 0 ? k - j : j];
+    for (std::size_t order = 1; order < d.size(); ++order)
+      for (std::size_t j = d.size() - 1; j >= order; --j) d[j] = d[j - 1] - d[j];
+    return d[1] > 2 * (std::abs(d[2]) + std::abs(d[3])) && std::abs(d[4]) <= on_polynomial * d[1];
+  }
   bool has_both(std::size_t k) const {
     return k > 0 && k + 1 < x.size() && std::isfinite(x[k - 1]) && std::isfinite(x[k + 1]);
   }

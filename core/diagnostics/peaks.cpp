@@ -296,7 +296,7 @@ PeakInMotion closer(const Neighbourhood& around, const StateValues& values, Peak
     return all;
   };
   const auto at_parabola = [&](const PeakSamples& some, std::size_t at) {
-    if (!some.has_both(at)) return;
+    if (!some.has_both(at) || some.is_known(at)) return;
     const PeakInMotion top = some.parabola(at);
     const double there = around.sample({top.t}, values).front(), above = top.value - some.x[at];
     // Next to a singular pose one state by itself may say anything. A corner has no parabola.
@@ -307,6 +307,7 @@ PeakInMotion closer(const Neighbourhood& around, const StateValues& values, Peak
   };
   const PeakSamples all = samples(around.begin(), around.end());
   for (const std::size_t k : all.tops(best.value)) {
+    if (all.is_known(k)) continue;
     PeakSamples some = samples(all.t[k > 0 ? k - 1 : 0], all.t[std::min(k + 1, all.t.size() - 1)]);
     for (const std::size_t at : some.tops(best.value)) at_parabola(some, at);
     for (int zoom = 0; zoom < most_zooms; ++zoom) {
