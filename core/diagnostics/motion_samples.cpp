@@ -27,12 +27,12 @@ const MotionSamples::Sample* MotionSamples::find(const Key& key) const {
 }
 
 const MotionSamples::Sample& MotionSamples::keep(Key key, Sample sample) {
-  constexpr std::size_t room = std::size_t{1} << 21U;  // numbers: 16 MB
+  constexpr std::size_t room = std::size_t{1} << 21U, always = 4;  // numbers: 16 MB; of large structures
   const Trajectory& states = sample.piece.trajectory;
   std::size_t numbers = 0;
   for (std::size_t i = 0; i < states.size(); ++i)
     numbers += 2 * static_cast<std::size_t>(states.state(i).z.size()) + states.structure().rods.size();
-  if (numbers_ + numbers > room) return last_.emplace(std::move(sample));
+  if (numbers_ + numbers > room && kept_.size() >= always) return last_.emplace(std::move(sample));
   numbers_ += numbers;
   const Sample& kept = kept_.insert_or_assign(std::move(key), std::move(sample)).first->second;
   pieces_.insert(&kept.piece);

@@ -28,7 +28,7 @@ class MotionSamples {
   using Key = std::tuple<const Simulation*, std::size_t, bool, std::vector<double>>;
 
   const Sample* find(const Key& key) const;
-  // The sample, kept where there is room: large structures are not.
+  // The sample, kept where there is room: of large structures a few.
   const Sample& keep(Key key, Sample sample);
   // diagnose_states(), or diagnose_energies(), of a piece.
   const Diagnostics& of(const Simulation& piece, bool energies);

@@ -113,17 +113,28 @@ bool depends(const SparseRows& G, int row, const std::vector<int>& others) {
   return x.norm() <= left * std::max(1.0, y.norm());
 }
 
-// Elimination in order fills the rows of a chain, of which none depends.
+// Elimination in order fills the rows of a chain, of which none depends. Rows that it may doubt are as many
+// as factors in twice the digits say, or each is asked, which takes a factorisation.
 std::vector<int> dependent_rows(const SparseRows& G) {
   constexpr double weak = 1e-12;  // the square of a singular value of unit rows that elimination may doubt
+  constexpr double none = 1e-20;  // and of rounding
   SparseRows identity(G.cols(), G.cols());
   identity.setIdentity();
   const SparseRows clean = without_round_off_transposed(G).transpose();
   SaddleSolver solver(identity, clean);
-  if (solver.factorise(clean) && solver.all_independent(weak)) return {};
-  return eliminate(G, VectorXd::Zero(G.rows()), dependent_row,
-                   [&](int row, const std::vector<int>& others) { return depends(G, row, others); })
-      .redundant;
+  const bool held = solver.factorise(clean);
+  if (held && solver.all_independent(weak)) return {};
+  const auto eliminated = [&](const DependsOn& asked) {
+    return eliminate(G, VectorXd::Zero(G.rows()), dependent_row, asked).redundant;
+  };
+  bool doubts = false;
+  const auto mark = [&doubts](int, const std::vector<int>&) {
+    doubts = true;
+    return false;
+  };
+  const std::vector<int> dependent = eliminated(mark);
+  if (!doubts || (held && solver.rows_below_finely(none) == std::ssize(dependent))) return dependent;
+  return eliminated([&](int row, const std::vector<int>& others) { return depends(G, row, others); });
 }
 
 }  // namespace
