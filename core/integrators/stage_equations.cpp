@@ -200,14 +200,13 @@ bool StageEquations::end_by_motion(const VectorXd& w_1, double resolved, VectorX
     move_to(j);
     rods.take_from_lengths(j, t + c.tau[j] * h, q_tau_, v_tau_);
   }
-  const bool stopped = !rods.held.rods().empty();
-  const bool by_motion = (c.s < fewest_that_tell || stopped) && !others_unresolved(resolved);
+  const bool tells = !others_unresolved(resolved);
   q_tau_ = Q.col(c.s - 1);
   system.expand_rate(w_1, v_tau_);
   tension.resize(rods.tension.rows());
   system.giving_rod_forces(t + h, q_tau_, v_tau_, tension);
-  if (by_motion && stopped) rods.held.find_forces(t + h, q_tau_, v_tau_, tension);
-  return by_motion;
+  if (tells && !rods.held.rods().empty()) rods.held.find_forces(t + h, q_tau_, v_tau_, tension);
+  return tells;
 }
 
 VectorXd StageEquations::held_tension(const VectorXd& w_1, double resolved) {
@@ -219,7 +218,7 @@ VectorXd StageEquations::held_tension(const VectorXd& w_1, double resolved) {
 }
 
 void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd& tension, VectorXd& error) {
-  const bool by_motion = end_by_motion(w_1, resolved, tension), few = c.s < fewest_that_tell;
+  const bool tells = end_by_motion(w_1, resolved, tension), few = c.s < fewest_that_tell;
   VectorXd by_lengths(tension.size());
   system.giving_rod_forces(t + h, q_tau_, v_tau_, by_lengths);
   const SparseRows directions = system.giving_rod_directions(q_tau_);
@@ -229,20 +228,21 @@ void StageEquations::end_tension(const VectorXd& w_1, double resolved, VectorXd&
   for (Index i = 0; i < tension.size(); ++i)
     if (rods.h_omega(i, h, directions) > resolved) fast.push_back(i);
   for (const Index i : fast)
-    if (!by_motion || !(few || is_held(i))) tension[i] = rods.tension.row(i).dot(c.tau_to_end);
+    if (!tells || !(few || is_held(i))) tension[i] = rods.tension.row(i).dot(c.tau_to_end);
   VectorXd without = tension, amplitude = VectorXd::Zero(tension.size());
-  const bool told = by_motion && take_unresolved(fast, directions, resolved);
+  const bool told = tells && take_unresolved(fast, directions, resolved);
   if (told) {
     rods.unresolved.find_forces(t + h, q_tau_, v_tau_, without);
     amplitude = resolved / h * rods.unresolved.impulse(t + h, w_1);
   }
   error.setZero(tension.size());
   for (const Index i : fast) {
-    const double rate = rods.rate_over_omega(i, t + h, w_1, directions);
-    if (!is_held(i))
-      error[i] = std::hypot(by_lengths[i] - (few && told ? without : tension)[i], rate);
+    const double rate = rods.rate_over_omega(i, t + h, w_1, directions),
+                 of_modes = std::hypot(tension[i] - without[i], amplitude[i]);
+    if (is_held(i))
+      error[i] = told ? of_modes : std::abs(rate);
     else
-      error[i] = told ? std::hypot(tension[i] - without[i], amplitude[i]) : std::abs(rate);
+      error[i] = std::max(of_modes, std::hypot(by_lengths[i] - (few && told ? without : tension)[i], rate));
   }
   if (few && told) tension = without;
 }
