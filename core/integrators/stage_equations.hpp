@@ -71,8 +71,8 @@ class StageEquations {
   // those of the modes that are held still and, with fewer than four stages, of all modes of h omega >
   // `resolved`: there the points of the quadrature do not tell them; not so beside waves of other forces that
   // are not resolved, which the end's coordinates do not tell, either. `error`: what modes that are neither
-  // resolved nor stopped may change of them, by what lengths say of them and by the rate at which these
-  // change over omega [N].
+  // resolved nor stopped may change of them, by what lengths say of them, by what the motion says without
+  // them and by the rate at which they change over omega [N].
   void end_tension(const VectorXd& w_1, double resolved, VectorXd& tension, VectorXd& error);
   // The same of the rods that are held still, whose lengths need not be held yet.
   VectorXd held_tension(const VectorXd& w_1, double resolved);
