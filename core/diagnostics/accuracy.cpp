@@ -15,6 +15,7 @@
 #include "core/diagnostics/driven_tables.hpp"
 #include "core/diagnostics/good_part.hpp"
 #include "core/diagnostics/rod_peaks.hpp"
+#include "core/diagnostics/state_forces.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/integrators/stage_equations.hpp"
 #include "core/math/largest.hpp"
@@ -242,6 +243,19 @@ std::string without_bound(const Trajectory& run) {
   return {};
 }
 
+// Of states that rest so near to a singular pose that nothing but rounding says their forces.
+std::string words_of_undetermined(const Trajectory& run, const Diagnostics& d) {
+  const auto [first, last] = undetermined_states(run, d);
+  if (first == last) return {};
+  std::ostringstream text;
+  text.precision(6);
+  text << "from t = " << d.t[first] << " s to " << d.t[last]
+       << " s the pose is so near to a singular one that rounding says its forces, which may grow without "
+          "bound towards it: rod forces, torques and reactions are not unique there; rest before that pose, "
+          "or let rods give (structure.rod_model)";
+  return text.str();
+}
+
 }  // namespace
 
 Rise rise_on_the_way(const Simulation& run, const Diagnostics& d) {
@@ -456,6 +470,8 @@ std::vector<std::string> accuracy_warnings(const Simulation& run, const Diagnost
       warnings.push_back(std::move(text_of_turns));
   if (std::string text_of_forces = without_bound(run.trajectory); !text_of_forces.empty())
     warnings.push_back(std::move(text_of_forces));
+  if (std::string text_of_rest = words_of_undetermined(run.trajectory, d); !text_of_rest.empty())
+    warnings.push_back(std::move(text_of_rest));
   if (Rise rise = rise_on_the_way(run, d); !rise.text.empty()) warnings.push_back(std::move(rise.text));
   if (const std::size_t first = first_unstretched(run, d); first < d.t.size()) {
     text.str("");

@@ -311,8 +311,6 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
 }
 
 enum class Look { energies, books, states, all };
-// What a pose next to a singular one does not tell better is not called unique; of the largest multiplier.
-constexpr double told = 1e-4;
 
 // The columns of a run, filled state by state.
 class StateTable {
@@ -420,7 +418,7 @@ class StateTable {
   VectorXd find_forces(std::size_t i, const VectorXd& q, const VectorXd& v) {
     const State& state = run_.trajectory.state(i);
     VectorXd lambda = forces_.multipliers(i, acceleration_);
-    const double most = told * lambda.lpNorm<Eigen::Infinity>();
+    const double most = most_doubt * lambda.lpNorm<Eigen::Infinity>();
     const VectorXd& doubt = forces_.doubt();
     sharing_->share(state.t, q, run_.trajectory.report(i).singular_event, lambda);
     if (doubt.size() > 0 && doubt.maxCoeff() > most) {

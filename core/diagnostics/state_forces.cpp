@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/diagnostics/diagnostics.hpp"
 #include "core/math/lagrange.hpp"
 
 namespace unfurl {
@@ -17,6 +18,9 @@ namespace {
 constexpr double weak = 3, rough = 1e-6, rough_at_end = 1e-4;
 // Doubt, of the largest multiplier: what is not worth a thought, and what is not worth poses beside it.
 constexpr double negligible = 1e-8, harmless = 1e-6;
+
+// Weakness from which on rounding of a pose may count, and from which on it does, however smooth the forces.
+constexpr double may_count = 300, counts = 1e4;
 
 const SolvedPoint nothing_known{};
 
@@ -57,13 +61,15 @@ VectorXd StateForces::multipliers(std::size_t i, VectorXd& node_acceleration) {
   const System& system = trajectory_.model(i).system;
   SolvedPoint here = at(i);
   doubt_.resize(0);
-  if (here.known && here.weakness > weak && !smooth(i)) {
+  if (here.known && here.weakness > weak && (!smooth(i) || tells_nothing(i, here.weakness)) &&
+      !stays(i, here.lambda)) {
+    seen_ = {i, here.lambda, {}};
     Close closer = look_closely(i, trajectory_.state(i));
     if (closer.doubt.size() > 0) {
       if (closer.doubt.maxCoeff() > harmless * closer.point.lambda.lpNorm<Eigen::Infinity>())
         interpolate(i, closer);
       here = std::move(closer.point);
-      doubt_ = std::move(closer.doubt);
+      doubt_ = seen_.doubt = std::move(closer.doubt);
     }
   }
   node_acceleration.resize(system.coordinates());
@@ -104,6 +110,26 @@ bool StateForces::smooth(std::size_t i) {
   for (std::size_t k = 0; k < states.size(); ++k)
     off -= lagrange_weight(k, states.size(), trajectory_.time(i), time) * at(states[k]).lambda;
   return off.lpNorm<Eigen::Infinity>() <= (inside ? rough : rough_at_end) * lambda.lpNorm<Eigen::Infinity>();
+}
+
+// Forces are smooth whatever rounding says of them where the pose rests, or hardly moves.
+bool StateForces::tells_nothing(std::size_t i, double weakness) const {
+  if (weakness > counts && std::isfinite(weakness)) return true;
+  if (!(weakness > may_count)) return false;
+  const std::vector<std::size_t> before = beside(i, -1, 1), behind = beside(i, +1, 1);
+  return before.size() + behind.size() > 0 && rests(i, before) && rests(i, behind);
+}
+
+// Whether the pose and its forces are those of the state before, which was looked at closely: then so is its
+// doubt.
+bool StateForces::stays(std::size_t i, const VectorXd& lambda) {
+  const std::vector<std::size_t> before = beside(i, -1, 1);
+  if (before.empty() || seen_.i != before.front() || !rests(i, before) ||
+      !((lambda - seen_.lambda).lpNorm<Eigen::Infinity>() <= rough * lambda.lpNorm<Eigen::Infinity>()))
+    return false;
+  seen_.i = i;
+  doubt_ = seen_.doubt;
+  return true;
 }
 
 // No doubt where it is negligible.
@@ -223,6 +249,27 @@ void StateForces::interpolate(std::size_t i, Close& here) {
     here.doubt = std::move(doubt);
     if (least <= negligible * here.point.lambda.lpNorm<Eigen::Infinity>()) return;
   }
+}
+
+std::pair<std::size_t, std::size_t> undetermined_states(const Trajectory& trajectory, const Diagnostics& d) {
+  constexpr std::size_t fewest = 5;  // fewer are passed on the way
+  const auto open = [&](std::size_t i) {
+    for (std::size_t r = 0; r < d.rod_unique.size(); ++r)
+      if (d.rod_unique[r] && !d.force_unique(static_cast<Index>(i), static_cast<Index>(r))) return true;
+    return false;
+  };
+  StateForces forces(trajectory);
+  VectorXd acceleration;
+  const std::size_t states = d.t.size() - d.left_open;
+  for (std::size_t first = 0, end = 0; first < states; first = std::max(end, first + 1)) {
+    for (end = first; end < states && open(end);) ++end;
+    if (end - first < fewest) continue;
+    const VectorXd lambda = forces.multipliers((first + end) / 2, acceleration);
+    const VectorXd& doubt = forces.doubt();
+    if (doubt.size() > 0 && doubt.maxCoeff() > most_doubt * lambda.lpNorm<Eigen::Infinity>())
+      return {first, end - 1};
+  }
+  return {0, 0};
 }
 
 }  // namespace unfurl

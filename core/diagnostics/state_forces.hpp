@@ -4,12 +4,17 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/integrators/index1.hpp"
 #include "core/simulate/trajectory.hpp"
 
 namespace unfurl {
+
+// Doubt of multipliers beyond which what a pose next to a singular one says of them is not called unique; of
+// the largest multiplier.
+inline constexpr double most_doubt = 1e-4;
 
 // What the index-1 equations say at a state, in solved coordinates.
 struct SolvedPoint {
@@ -45,6 +50,8 @@ class StateForces {
   void solve_from(std::size_t i);
   std::vector<std::size_t> beside(std::size_t i, int way, std::size_t most) const;
   bool smooth(std::size_t i);
+  bool tells_nothing(std::size_t i, double weakness) const;
+  bool stays(std::size_t i, const VectorXd& lambda);
   // A solution and its doubt.
   struct Close {
     double t = 0;
@@ -71,6 +78,18 @@ class StateForces {
   std::unique_ptr<Index1> one_;
   const Model* close_ = nullptr;  // that model
   VectorXd doubt_;
+  // What was looked at closely last, and what the equations had given there.
+  struct Seen {
+    std::size_t i = static_cast<std::size_t>(-1);
+    VectorXd lambda, doubt;
+  };
+  Seen seen_;
 };
+
+// Stretches of a run whose pose is so near to a singular one that its rounding says forces which are unique
+// elsewhere: where a drive rests in a flat pose. The first one's first and last state; the same number twice
+// where there is none.
+struct Diagnostics;
+std::pair<std::size_t, std::size_t> undetermined_states(const Trajectory& trajectory, const Diagnostics& d);
 
 }  // namespace unfurl
