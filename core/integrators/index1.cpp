@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/interleaved.hpp"
+
 namespace unfurl {
 
 namespace {
@@ -193,6 +195,18 @@ bool Index1::evaluate_closely(State state, VectorXd& acceleration, VectorXd& lam
   return true;
 }
 
+namespace {
+
+// By what multipliers are more than what they answer, where that is more than redundant rows make of it.
+double weakness_of(const VectorXd& lambda, double acts, const VectorXd& inertia) {
+  constexpr double much = 1e4;
+  const double answered = std::max(acts, largest_magnitude(inertia.data(), inertia.size()));
+  const double most = largest_magnitude(lambda.data(), lambda.size());
+  return most > much * answered && answered > 0 ? most / answered : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
 Index1Lanes::Index1Lanes(const System& system) : system_(system), one_(system_, true), lanes_(one_.saddle_) {
   mixed_.resize(system.solved_coordinates());
   for (Index i = 0; i < mixed_.size(); ++i) mixed_[i] = std::cos(1.0 + static_cast<double>(i));
@@ -202,6 +216,7 @@ Index1Lanes::Index1Lanes(const System& system) : system_(system), one_(system_, 
 
 void Index1Lanes::evaluate(std::span<const State* const> states) {
   SaddleLanes::Vectors none, rows;
+  std::array<double, SaddleLanes::lanes> acts{};
   for (std::size_t k = 0; k < ok_.size(); ++k) {
     force_[k].resize(0);
     if (k >= states.size()) continue;
@@ -210,6 +225,7 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
     one_.place(s.t, s.z, s.w, s.tension);
     lanes_.set(static_cast<int>(k), one_.G_);
     force_[k] = one_.force_;
+    acts[k] = largest_magnitude(one_.force_.data(), one_.force_.size());
     bias_[k] = one_.bias_;
     none[k] = none_;
     rows[k].noalias() = one_.G_ * mixed_;
@@ -247,7 +263,7 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
       }
     }
     if (alone[k]) acceleration_[k] = own_acceleration[k], lambda_[k] = own_lambda[k];
-    if (in_doubt[k]) weakness_[k] = std::numeric_limits<double>::infinity();
+    if (in_doubt[k]) weakness_[k] = weakness_of(lambda_[k], acts[k], system_.mass() * acceleration_[k]);
     ok_[k] = ok_[k] && acceleration_[k].allFinite() && lambda_[k].allFinite();
   }
 }

@@ -83,8 +83,9 @@ class Index1Lanes {
   const VectorXd& acceleration(std::size_t k) const { return acceleration_[k]; }
   const VectorXd& lambda(std::size_t k) const { return lambda_[k]; }
   // About 1 / s, s the smallest singular value but for those of redundant rows, or somewhat less: the
-  // multipliers that answer G x over M x, x of every direction something. No bound where doubles may not
-  // tell a weak direction from a redundant row.
+  // multipliers that answer G x over M x, x of every direction something. Where doubles may
+  // not tell a weak direction from a redundant row: no bound, or how many times multipliers are what they
+  // answer, where that tells.
   double weakness(std::size_t k) const { return weakness_[k]; }
 
  private:
