@@ -61,16 +61,16 @@ VectorXd StateForces::multipliers(std::size_t i, VectorXd& node_acceleration) {
   const System& system = trajectory_.model(i).system;
   SolvedPoint here = at(i);
   doubt_.resize(0);
-  if (here.known && here.weakness > weak && (!smooth(i) || tells_nothing(i, here.weakness)) &&
-      !stays(i, here.lambda)) {
+  const bool rough_here = here.known && here.weakness > weak && !smooth(i);
+  if ((rough_here || (here.known && tells_nothing(i, here.weakness))) && !stays(i, here.lambda)) {
     seen_ = {i, here.lambda, {}};
     Close closer = look_closely(i, trajectory_.state(i));
-    if (closer.doubt.size() > 0) {
+    if (closer.doubt.size() > 0 && rough_here) {
       if (closer.doubt.maxCoeff() > harmless * closer.point.lambda.lpNorm<Eigen::Infinity>())
         interpolate(i, closer);
       here = std::move(closer.point);
-      doubt_ = seen_.doubt = std::move(closer.doubt);
     }
+    doubt_ = seen_.doubt = std::move(closer.doubt);
   }
   node_acceleration.resize(system.coordinates());
   system.expand_rate(here.known ? here.acceleration : VectorXd::Constant(system.solved_coordinates(), nan),
@@ -112,12 +112,16 @@ bool StateForces::smooth(std::size_t i) {
   return off.lpNorm<Eigen::Infinity>() <= (inside ? rough : rough_at_end) * lambda.lpNorm<Eigen::Infinity>();
 }
 
-// Forces are smooth whatever rounding says of them where the pose rests, or hardly moves.
-bool StateForces::tells_nothing(std::size_t i, double weakness) const {
-  if (weakness > counts && std::isfinite(weakness)) return true;
+// Forces are smooth whatever rounding says of them where the pose rests, or what is weak of it does.
+bool StateForces::tells_nothing(std::size_t i, double weakness) {
   if (!(weakness > may_count)) return false;
-  const std::vector<std::size_t> before = beside(i, -1, 1), behind = beside(i, +1, 1);
-  return before.size() + behind.size() > 0 && rests(i, before) && rests(i, behind);
+  const std::vector<std::size_t> before = beside(i, -1, 2), behind = beside(i, +1, 2);
+  if (before.size() < 2) return false;
+  if (rests(i, before) && rests(i, behind)) return true;
+  const auto weak_too = [&](std::size_t k) {
+    return at(k).weakness > counts && std::isfinite(at(k).weakness);
+  };
+  return weak_too(i) && std::ranges::all_of(before, weak_too) && std::ranges::all_of(behind, weak_too);
 }
 
 // Whether the pose and its forces are those of the state before, which was looked at closely: then so is its

@@ -50,7 +50,7 @@ class StateForces {
   void solve_from(std::size_t i);
   std::vector<std::size_t> beside(std::size_t i, int way, std::size_t most) const;
   bool smooth(std::size_t i);
-  bool tells_nothing(std::size_t i, double weakness) const;
+  bool tells_nothing(std::size_t i, double weakness);
   bool stays(std::size_t i, const VectorXd& lambda);
   // A solution and its doubt.
   struct Close {
