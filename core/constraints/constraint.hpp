@@ -62,7 +62,7 @@ class ConstraintBlock {
     return false;
   }
   // What motions from the pose q0 (moves: interleaved, without gaps) change of each row, where nothing
-  // cancels: round-off is relative to the motion. Of rows that do not depend on time.
+  // cancels: round-off is relative to the motion. Not what time changes of them.
   virtual bool changes(int /*poses*/, const double* /*q0*/, const double* /*moves*/, double* /*phi*/) const {
     return false;
   }

@@ -56,6 +56,11 @@ class MeasureRows final : public ConstraintBlock {
   void value_at(const Moment& at, const double* q, double* phi) const override {
     for (const Measured& row : rows_) *phi++ = row.scale * row.measure.value(q, at, row.followed);
   }
+  bool changes(int poses, const double* q0, const double* moves, double* phi) const override {
+    if (poses != 1) return false;
+    for (const Measured& row : rows_) *phi++ = row.scale * row.measure.change(q0, moves);
+    return true;
+  }
   void list_drives(std::vector<Drive>& drives) const override {
     for (std::size_t r = 0; r < rows_.size(); ++r)
       if (rows_[r].target.moves())

@@ -23,6 +23,7 @@ void ConstraintIncrement::evaluate(double t, const ConstVec& D, MutVec change) {
     system_.jacobian(pose_, G_, scratch_);
     sum_.noalias() += gauss_.weights[i] * (G_ * D);
   }
+  system_.put_changes(q0_, move_, sum_);
   if (system_.rheonomic() && t != t0_) {
     system_.constraint(t, q0_, target_);
     sum_ += target_ - target0_;

@@ -13,9 +13,10 @@ namespace unfurl {
 //     Phi(z_0 + D, t) - Phi(z_0, t_0) = (integral of G(z_0 + sigma D) over 0 <= sigma <= 1) D - (g(t) -
 //     g(t_0))
 //
-// by three Gauss points, which are exact for every constraint that is a polynomial of degree six or less;
-// angles are smooth and turn little where this is needed. Nothing cancels in the product: its round-off is
-// relative to D, that of Phi itself to the coordinates, which next to a dead centre are 1e8 times larger.
+// by what kinds of constraints offer (of an angle that turns far no few points of a quadrature tell it, and
+// what one step leaves no other asks for), else by three Gauss points, which are exact for every constraint
+// that is a polynomial of degree six or less. Nothing cancels in either: their round-off is relative to D,
+// that of Phi itself to the coordinates, which next to a dead centre are 1e8 times larger.
 class ConstraintIncrement {
  public:
   explicit ConstraintIncrement(const System& system);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/structure/angle_sides.hpp"
 
+#include "core/structure/change.hpp"
+
 namespace unfurl {
 
 UnitVector::UnitVector(const Vec3& d) : t(Vec3::Zero()), length(d.norm()), first(Mat3::Zero()) {
@@ -73,6 +75,25 @@ Vec6 AngleSides::rate(const double* v) const {
   for (int s = 0; s < 2; ++s) {
     const auto& by = sides_[static_cast<std::size_t>(s)].by;
     out.segment<3>(3 * s) = bends() ? Vec3(by[2] * part(v, s, 1) - by[0] * part(v, s, 0)) : part(v, s, 0);
+  }
+  return out;
+}
+
+// Of t = d / |d|: (d + u) / |d + u| - d / |d| = (u - t (|d + u| - |d|)) / |d + u|
+Vec6 AngleSides::change(const double* u) const {
+  Vec6 out;
+  for (int s = 0; s < 2; ++s) {
+    if (!bends()) {
+      out.segment<3>(3 * s) = part(u, s, 0);
+      continue;
+    }
+    out.segment<3>(3 * s).setZero();
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 d = part(q_, s, k), by = part(u, s, k);
+      const Change length = root(dot_change(d, by, d, by));
+      out.segment<3>(3 * s) += share[static_cast<std::size_t>(k)] * (by - UnitVector(d).t * length.change) /
+                               (length.value + length.change);
+    }
   }
   return out;
 }

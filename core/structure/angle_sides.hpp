@@ -35,6 +35,8 @@ class AngleSides {
   // Of (d_1, d_2), along q + t v
   Vec6 rate(const double* v) const;
   Vec6 second_rate(const double* v) const;
+  // Of (d_1, d_2), from q to q + u: nothing cancels
+  Vec6 change(const double* u) const;
 
  private:
   struct Side {

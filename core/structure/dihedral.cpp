@@ -15,6 +15,7 @@
 #include <cmath>
 
 #include "core/math/types.hpp"
+#include "core/structure/change.hpp"
 #include "core/structure/course.hpp"
 
 namespace unfurl {
@@ -119,6 +120,17 @@ struct Courses {
   }
 };
 
+struct Changes {
+  Slopes at, by;
+  Change product(int i, int j) const {
+    return dot_change(at.vector(i), by.vector(i), at.vector(j), by.vector(j));
+  }
+  Change volume() const {
+    const Slope w = at.volume(), all = by.volume();
+    return {w.value, w.gradient.dot(by.b) + all.gradient.dot(at.b) + all.value};
+  }
+};
+
 // s and c
 template <class Point>
 auto sine(const Point& at) {
@@ -185,6 +197,11 @@ void dihedral_hessian(const double* q, const std::vector<int>& stencil, double* 
 double dihedral_curvature(const double* q, const double* v, const std::vector<int>& stencil) {
   const Courses b{edges(q, stencil), edges(v, stencil)};
   return second_of_angle(sine(b), cosine(b));
+}
+
+double dihedral_change(const double* q, const double* u, const std::vector<int>& stencil) {
+  const Changes b{edges(q, stencil), edges(u, stencil)};
+  return change_of_angle(sine(b), cosine(b));
 }
 
 }  // namespace unfurl

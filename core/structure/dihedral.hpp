@@ -12,5 +12,7 @@ double dihedral(const double* q, const std::vector<int>& stencil, double* gradie
 void dihedral_hessian(const double* q, const std::vector<int>& stencil, double* hess);
 // v^T Hess v: its second derivative along q + t v, without that matrix.
 double dihedral_curvature(const double* q, const double* v, const std::vector<int>& stencil);
+// By what it changes from q to q + u, to the nearest turn; round-off is relative to u.
+double dihedral_change(const double* q, const double* u, const std::vector<int>& stencil);
 
 }  // namespace unfurl

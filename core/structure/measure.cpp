@@ -8,6 +8,7 @@
 
 #include "core/math/twofold.hpp"
 #include "core/structure/angle_sides.hpp"
+#include "core/structure/change.hpp"
 #include "core/structure/course.hpp"
 #include "core/structure/dihedral.hpp"
 
@@ -395,6 +396,41 @@ double MeasureFunction::angle_curvature(const double* q, const double* v) const 
   if (in_line(s, c.value)) return second_of_angle({s, 0, 0}, c);
   const double s1 = n.dot(n1) / s;
   return second_of_angle({s, s1, (n1.squaredNorm() + n.dot(n2) - s1 * s1) / s}, c);
+}
+
+double MeasureFunction::change(const double* q, const double* u) const {
+  switch (kind_) {
+    case MeasureKind::coordinate:
+      return linear(sine_, 0.0, u);
+    case MeasureKind::length: {
+      const Vec3 d = edge(q), by = edge(u);
+      return root(dot_change(d, by, d, by)).change;
+    }
+    case MeasureKind::angle:
+      return angle_change(q, u);
+    case MeasureKind::fold:
+      return change_of_angle({linear(sine_, sine_offset_, q), linear(sine_, 0.0, u)},
+                             {linear(cosine_, cosine_offset_, q), linear(cosine_, 0.0, u)});
+    case MeasureKind::dihedral:
+      return dihedral_change(q, u, stencil_);
+    case MeasureKind::combination:
+      break;
+  }
+  double total = 0;
+  each_term([&](const MeasureFunction& term, double c, std::size_t, int) { total += c * term.change(q, u); });
+  return total;
+}
+
+double MeasureFunction::angle_change(const double* q, const double* u) const {
+  const AngleSides sides(q, stencil_);
+  const Vec6 by = sides.change(u);
+  const Vec3 &d1 = sides.d1(), &d2 = sides.d2();
+  const Vec3 u1 = by.head<3>(), u2 = by.tail<3>();
+  const Vec3 n = d1.cross(d2), n_by = d1.cross(u2) + u1.cross(d2 + u2);
+  const Change c = dot_change(d1, u1, d2, u2);
+  if (axis_.isZero(0.0)) return change_of_angle(root(dot_change(n, n_by, n, n_by)), c);
+  const Change h1{axis_.dot(d1), axis_.dot(u1)}, h2{axis_.dot(d2), axis_.dot(u2)};
+  return change_of_angle({axis_.dot(n), axis_.dot(n_by)}, c - h1 * h2);
 }
 
 // (I - n n^T) / length, n the unit direction.

@@ -50,6 +50,8 @@ class MeasureFunction {
   void add_hessian_times(const double* q, const double* v, double scale, double* out) const;
   // v^T Hess s v: the second derivative of s along q + t v, without that matrix.
   double curvature_along(const double* q, const double* v) const;
+  // By what s changes from q to q + u, angles to the nearest turn; round-off is relative to u.
+  double change(const double* q, const double* u) const;
   double rate(const double* gradient, const double* v) const {  // gradient . v
     double sum = 0;
     for (std::size_t i = 0; i < stencil_.size(); ++i) sum += gradient[i] * v[stencil_[i]];
@@ -69,6 +71,7 @@ class MeasureFunction {
   void length_hessian(const double* q, double* hess) const;
   void fold_hessian(const double* q, double* hess) const;
   void combination_hessian(const double* q, double* hess) const;
+  double angle_change(const double* q, const double* u) const;
   double angle_curvature(const double* q, const double* v) const;
   Vec3 edge(const double* q) const;  // of a length
   double linear(const VectorXd& coefficients, double offset, const double* q) const;

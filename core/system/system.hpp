@@ -101,6 +101,8 @@ class System {
   // offer that.
   bool constraint_changes(const ConstVec& q0, const Interleaved& D, Interleaved& phi,
                           StageScratch& scratch) const;
+  // The same of one motion u of the nodes, of the rows whose kinds offer it; others are left as they are.
+  void put_changes(const ConstVec& q0, const ConstVec& u, MutVec change) const;
   void add_constraint_force_stages(const Interleaved& Q, Index first, const Interleaved& lambda,
                                    const double* scale, Interleaved& f, StageScratch& scratch) const;
 

@@ -147,6 +147,15 @@ bool System::constraint_changes(const ConstVec& q0, const Interleaved& D, Interl
   return true;
 }
 
+void System::put_changes(const ConstVec& q0, const ConstVec& u, MutVec change) const {
+  double* out = change.data();
+  for (const ConstraintBlock* block : data_->kept) {
+    block->changes(1, q0.data(), u.data(), out);
+    out += block->rows();
+  }
+  for (const int implied : data_->implied) change[implied] = 0;
+}
+
 void System::add_constraint_force_stages(const Interleaved& Q, Index first, const Interleaved& lambda,
                                          const double* scale, Interleaved& f, StageScratch& scratch) const {
   const auto poses = static_cast<int>(lambda.cols());
