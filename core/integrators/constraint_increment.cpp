@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/constraint_increment.hpp"
 
+#include <cmath>
+#include <limits>
+
 namespace unfurl {
 
 ConstraintIncrement::ConstraintIncrement(const System& system)
     : system_(system), G_(system.jacobian_pattern()) {
   for (VectorXd* v : {&q0_, &pose_, &move_}) v->setZero(system.coordinates());
-  for (VectorXd* v : {&sum_, &target0_, &target_}) v->setZero(system.constraints());
+  for (VectorXd* v : {&sum_, &exact_, &target0_, &target_}) v->setZero(system.constraints());
 }
 
 void ConstraintIncrement::start(double t, const ConstVec& q0) {
@@ -23,12 +26,21 @@ void ConstraintIncrement::evaluate(double t, const ConstVec& D, MutVec change) {
     system_.jacobian(pose_, G_, scratch_);
     sum_.noalias() += gauss_.weights[i] * (G_ * D);
   }
-  system_.put_changes(q0_, move_, sum_);
+  take_what_points_miss();
   if (system_.rheonomic() && t != t0_) {
     system_.constraint(t, q0_, target_);
     sum_ += target_ - target0_;
   }
   change = sum_;
+}
+
+void ConstraintIncrement::take_what_points_miss() {
+  constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+  exact_ = sum_;
+  system_.put_changes(q0_, move_, exact_);
+  const double told = rounding * move_.lpNorm<Eigen::Infinity>();
+  for (Index r = 0; r < sum_.size(); ++r)
+    if (std::abs(exact_[r] - sum_[r]) > told) sum_[r] = exact_[r];
 }
 
 }  // namespace unfurl

@@ -13,10 +13,10 @@ namespace unfurl {
 //     Phi(z_0 + D, t) - Phi(z_0, t_0) = (integral of G(z_0 + sigma D) over 0 <= sigma <= 1) D - (g(t) -
 //     g(t_0))
 //
-// by what kinds of constraints offer (of an angle that turns far no few points of a quadrature tell it, and
-// what one step leaves no other asks for), else by three Gauss points, which are exact for every constraint
-// that is a polynomial of degree six or less. Nothing cancels in either: their round-off is relative to D,
-// that of Phi itself to the coordinates, which next to a dead centre are 1e8 times larger.
+// by three Gauss points, which are exact for every constraint that is a polynomial of degree six or less.
+// Nothing cancels in the product: its round-off is relative to D, that of Phi itself to the coordinates,
+// which next to a dead centre are 1e8 times larger. Of an angle that turns by a rad they miss c a^7, which no
+// later step asks for: what they miss beyond round-off is taken from what its kind offers.
 class ConstraintIncrement {
  public:
   explicit ConstraintIncrement(const System& system);
@@ -24,12 +24,14 @@ class ConstraintIncrement {
   void evaluate(double t, const ConstVec& D, MutVec change);
 
  private:
+  void take_what_points_miss();
+
   const System& system_;
   const Quadrature gauss_ = gauss_legendre(3);
   SparseRows G_;
   std::vector<double> scratch_;
   double t0_ = 0;
-  VectorXd q0_, pose_, move_, sum_, target0_, target_;
+  VectorXd q0_, pose_, move_, sum_, exact_, target0_, target_;
 };
 
 }  // namespace unfurl
