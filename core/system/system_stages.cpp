@@ -153,7 +153,6 @@ void System::put_changes(const ConstVec& q0, const ConstVec& u, MutVec change) c
     block->changes(1, q0.data(), u.data(), out);
     out += block->rows();
   }
-  for (const int implied : data_->implied) change[implied] = 0;
 }
 
 void System::add_constraint_force_stages(const Interleaved& Q, Index first, const Interleaved& lambda,
