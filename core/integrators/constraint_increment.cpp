@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/constraint_increment.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -35,10 +36,10 @@ void ConstraintIncrement::evaluate(double t, const ConstVec& D, MutVec change) {
 }
 
 void ConstraintIncrement::take_what_points_miss() {
-  constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon(), nothing = 1e-280;
   exact_ = sum_;
   system_.put_changes(q0_, move_, exact_);
-  const double told = rounding * move_.lpNorm<Eigen::Infinity>();
+  const double told = rounding * std::max(move_.lpNorm<Eigen::Infinity>(), nothing);
   for (Index r = 0; r < sum_.size(); ++r)
     if (std::abs(exact_[r] - sum_[r]) > told) sum_[r] = exact_[r];
 }
