@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/integrators/constraint_increment.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -36,12 +35,13 @@ void ConstraintIncrement::evaluate(double t, const ConstVec& D, MutVec change) {
 }
 
 void ConstraintIncrement::take_what_points_miss() {
-  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon(), nothing = 1e-280;
+  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon(), turns_little = 1e-5;
+  const double moved = move_.size() > 0 ? move_.lpNorm<Eigen::Infinity>() : 0.0;
+  if (sum_.size() == 0 || !(moved > turns_little * system_.constraint_lengths().minCoeff())) return;
   exact_ = sum_;
   system_.put_changes(q0_, move_, exact_);
-  const double told = rounding * std::max(move_.lpNorm<Eigen::Infinity>(), nothing);
   for (Index r = 0; r < sum_.size(); ++r)
-    if (std::abs(exact_[r] - sum_[r]) > told) sum_[r] = exact_[r];
+    if (std::abs(exact_[r] - sum_[r]) > rounding * moved) sum_[r] = exact_[r];
 }
 
 }  // namespace unfurl
