@@ -34,8 +34,9 @@ void ConstraintIncrement::evaluate(double t, const ConstVec& D, MutVec change) {
   change = sum_;
 }
 
+// Rows of large coefficients, sums that cancel, are left by rounding at some 1e-14 of the motion.
 void ConstraintIncrement::take_what_points_miss() {
-  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon(), turns_little = 1e-5;
+  constexpr double rounding = 512 * std::numeric_limits<double>::epsilon(), turns_little = 1e-5;
   const double moved = move_.size() > 0 ? move_.lpNorm<Eigen::Infinity>() : 0.0;
   if (sum_.size() == 0 || !(moved > turns_little * system_.constraint_lengths().minCoeff())) return;
   exact_ = sum_;
