@@ -234,7 +234,8 @@ std::string without_bound(const Trajectory& run) {
     text
         << "forces" << (count > 0 ? " of rod " + first : std::string())
         << (count > 1 ? " and " + std::to_string(count - 1) + " more" : std::string())
-        << " grow without bound towards the deployed pose at t = " << state.t
+        << " grow without bound towards the " << (run.structure().deployment.empty() ? "" : "deployed ")
+        << "pose at t = " << state.t
         << " s, as rods in line need them to bear a load across: that state has none, and peaks are those of "
            "states beside it; end with an angle_stop before that pose, or let rods give "
            "(structure.rod_model)";

@@ -7,14 +7,12 @@
 
 #include "core/integrators/index1.hpp"
 #include "core/path/path_deployed.hpp"
-#include "core/path/path_motion.hpp"
 #include "core/path/path_scope.hpp"
 #include "core/path/path_time.hpp"
 #include "core/path/path_watch.hpp"
 #include "core/simulate/force_sizes.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
-#include "core/simulate/one_sided.hpp"
 #include "core/simulate/run_words.hpp"
 #include "core/simulate/singular_poses.hpp"
 #include "core/simulate/stretched.hpp"
@@ -41,8 +39,9 @@ class PathRun {
         watch_(base_->structure, sides_, options.step),
         edges_(time_edges(base_->structure, options.step)),
         grid_(0.0, options, edges_),
+        poses_(base_->structure, options.step),
         run_{.trajectory = Trajectory(base_, closest_steps(options)), .options = options} {
-    refuse_friction();
+    refuse_friction(sides_, base_->structure, options);
   }
 
   Simulation run() {
@@ -70,15 +69,6 @@ class PathRun {
   const State& last() const { return run_.trajectory.state(run_.trajectory.size() - 1); }
 
   // --- start ---
-
-  // Modes of friction beside others, or of several, are found by the time loop alone.
-  void refuse_friction() const {
-    if (!sides_.any_friction()) return;
-    if (sides_.size() > 1) throw PathRefused("friction beside stops, cables or other friction");
-    if (driven_row(structure())) throw PathRefused("a drive beside friction");
-    if (options_.at_deployed == "latch" && !structure().deployment.empty())
-      throw PathRefused("friction beside latches");
-  }
 
   void begin() {
     InitialState start = initial_state(structure(), base_->system);
@@ -151,11 +141,9 @@ class PathRun {
     path_->point(s, z, tangent);
     const ScalarLaw::Value law = law_->at(s, v, 0.0);
     const VectorXd bend = v * v * piece.bend(x);
-    double along_path = law.Q;
-    if (drive_.there())  // m'' s'^2 + m' s'' = f''
-      along_path = (drive_.target.derivative(2, 0.0) -
-                    driven_second_rate(structure(), path_->system(), z, v * tangent, bend)) /
-                   law_->table().at(drive_.column, s).slope;
+    const double along_path = drive_.there() ? driven_along(structure(), path_->system(), *law_, drive_, 0.0,
+                                                            s, z, v * tangent, bend)
+                                             : law.Q;
     double sum = law.scale + free_acceleration(followed, structure(), state, lambda) + v * v / path_->unit();
     path_->system().expand_rate(along_path * tangent + bend, q);
     const VectorXd in_model = base_->system.reduce_rate(q);
@@ -198,6 +186,23 @@ class PathRun {
     double s = motion_.s(), v = 0;
     if (!resting_) motion_.at(t, s, v);
     append(state_at(t, s, v));
+    if (drive_.there() && poses_.singular_at(run_.trajectory, watch_, path_->unit(), s, v)) tell_forces(s, v);
+  }
+
+  // Of the last state, which a drive has led into a singular pose.
+  void tell_forces(double s, double v) {
+    State here = last();
+    run_.trajectory.pop_back();
+    here.lambda.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (poses_.just_deployed())
+      limit_here(here);
+    else if (poses_.rests(drive_, here.t))
+      limit_at_rest(model().system.at(last()), s, path_->unit(), states_, here);
+    poses_.tell_effort(*path_, *law_, drive_, s, v, here.t, model().system, here);
+    append(std::move(here), {.singular_event = true});
+  }
+  void limit_here(State& event) const {
+    limit_multipliers(model().system.at(last()), watch_, motion_, options_.step, states_, event);
   }
 
   // All times of the grid up to t.
@@ -428,8 +433,9 @@ class PathRun {
       // States so near to a singular pose have lost digits; the time loop has none there either.
       while (run_.trajectory.size() > 1 && !watch_.clear(motion_, last().t))
         run_.trajectory.pop_back(), --run_.steps;
-      const auto state = [this](double at, double s, double v) { return state_at(at, s, v); };
-      limit_multipliers(model().system.at(last()), watch_, motion_, options_.step, state, event);
+      limit_here(event);
+      if (drive_.there())
+        poses_.tell_effort(*path_, *law_, drive_, motion_.s(), motion_.v(), before(t), model().system, event);
     }
     append(std::move(event), StepReport{.singular_event = !regular});
     ++run_.steps;
@@ -465,6 +471,8 @@ class PathRun {
   PathWatch watch_;
   const std::vector<TimeEdge> edges_;
   TimeGrid grid_;
+  DrivenPoses poses_;
+  const StateOnPath states_ = [this](double t, double s, double v) { return state_at(t, s, v); };
   Simulation run_;
   std::unique_ptr<PathLaw> law_;
   PathMotion motion_;

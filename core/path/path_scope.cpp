@@ -83,6 +83,14 @@ std::shared_ptr<const Path> trace_path(const std::shared_ptr<const Model>& model
   return std::make_shared<const Path>(std::move(system), z);
 }
 
+void refuse_friction(const OneSided& sides, const Structure& structure, const SolverOptions& options) {
+  if (!sides.any_friction()) return;
+  if (sides.size() > 1) throw PathRefused("friction beside stops, cables or other friction");
+  if (driven_row(structure)) throw PathRefused("a drive beside friction");
+  if (options.at_deployed == "latch" && !structure.deployment.empty())
+    throw PathRefused("friction beside latches");
+}
+
 void refuse_other_ways(const OneSided& sides, std::size_t stop, const System& system, const State& here) {
   constexpr double one_way = 1 - 1e-6;
   PushResponses responses(system, here);

@@ -22,5 +22,7 @@ std::shared_ptr<const Path> trace_path(const std::shared_ptr<const Model>& model
 // Throws PathRefused unless an impulse of that stop takes the whole motion of the state: else the pose has
 // other ways to move, which it sets going.
 void refuse_other_ways(const OneSided& sides, std::size_t stop, const System& system, const State& here);
+// Modes of friction beside others, or of several, are found by the time loop alone.
+void refuse_friction(const OneSided& sides, const Structure& structure, const SolverOptions& options);
 
 }  // namespace unfurl

@@ -31,6 +31,10 @@ class PathWatch {
   // The deployed pose was further away than the margin at that time.
   bool clear(const PathMotion& motion, double t) const;
   double remaining(double s) const { return remaining_at(s).value; }  // as of the deployment
+  // The deployed pose, to rounding.
+  bool is_deployed(double s) const {
+    return deploys_ && std::abs(remaining(s)) <= 1e-9 * std::abs(remaining(0.0));
+  }
   // Whether the motion touches this stop, now, and goes on into it.
   bool meets(const PathMotion& motion, std::size_t stop) const;
   double gap_slope(std::size_t stop, double s) const;  // by s
