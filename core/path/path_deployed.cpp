@@ -67,7 +67,12 @@ void limit_multipliers(System followed, const PathWatch& watch, const PathMotion
   event.lambda = multipliers_at_deployed(index1, samples, event, rests ? poles : 1);
 }
 
-void limit_at_rest(System followed, double s, double unit, const StateOnPath& state, State& at) {
+void DrivenPoses::limit_at_rest(System followed, double s, double unit, bool timed, const StateOnPath& state,
+                                State& at) {
+  if (!timed && at_rest_.size() > 0) {
+    at.lambda = at_rest_;
+    return;
+  }
   constexpr double farthest = 3e-2, span = 12, from_start = 0.25;
   constexpr int count = 9;
   const double far = std::copysign(std::min(farthest * unit, from_start * std::abs(s)), s);
@@ -83,7 +88,7 @@ void limit_at_rest(System followed, double s, double unit, const StateOnPath& st
   }
   if (samples.size() < 3) return;
   followed.follow(at);
-  at.lambda = multipliers_at_deployed(index1, samples, at);
+  at.lambda = at_rest_ = multipliers_at_deployed(index1, samples, at);
 }
 
 bool DrivenPoses::singular_at(const Trajectory& trajectory, const PathWatch& watch, double unit, double s,
@@ -94,6 +99,7 @@ bool DrivenPoses::singular_at(const Trajectory& trajectory, const PathWatch& wat
   just_deployed_ = watch.is_deployed(s);
   if (!just_deployed_ && std::abs(v) * step_ > near) return false;
   known_ = s;
+  at_rest_.resize(0);
   return singular_ = singular_at_end(trajectory);
 }
 

@@ -18,9 +18,6 @@ using StateOnPath = std::function<State(double t, double s, double v)>;
 void limit_multipliers(System followed, const PathWatch& watch, const PathMotion& motion, double step,
                        const StateOnPath& state, State& event);
 
-// The same at rest in the state's pose, at s, by poses before it in which all rests, too.
-void limit_at_rest(System followed, double s, double unit, const StateOnPath& state, State& at);
-
 // s'' that a drive prescribes at z, from the rate there and the second one that it has with s'' = 0:
 // m'' s'^2 + m' s'' = target''.
 double driven_along(const Structure& structure, const System& system, const PathLaw& law,
@@ -41,6 +38,9 @@ class DrivenPoses {
   bool just_deployed() const { return just_deployed_; }
   // Nothing moves there for a while.
   bool rests(const PathDrive& drive, double t) const;
+  // Multipliers at rest in the state's pose, at s, by poses before it in which all rests, too. Once for all
+  // such states there, where nothing that acts changes with time.
+  void limit_at_rest(System followed, double s, double unit, bool timed, const StateOnPath& state, State& at);
   // Enters the drive's multiplier of the time t.
   void tell_effort(const Path& path, PathLaw& law, const PathDrive& drive, double s, double v, double t,
                    const System& system, State& state) const;
@@ -51,6 +51,7 @@ class DrivenPoses {
   std::optional<double> known_;
   bool singular_ = false;  // at known_
   bool just_deployed_ = false;
+  VectorXd at_rest_;  // at known_; empty: nobody has asked
 };
 
 }  // namespace unfurl

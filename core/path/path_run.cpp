@@ -197,7 +197,7 @@ class PathRun {
     if (poses_.just_deployed())
       limit_here(here);
     else if (poses_.rests(drive_, here.t))
-      limit_at_rest(model().system.at(last()), s, path_->unit(), states_, here);
+      poses_.limit_at_rest(model().system.at(last()), s, path_->unit(), law_->timed(), states_, here);
     poses_.tell_effort(*path_, *law_, drive_, s, v, here.t, model().system, here);
     append(std::move(here), {.singular_event = true});
   }
