@@ -116,4 +116,46 @@ TEST_CASE("a drive's torque in a flat pose on its path is that of the motion") {
       }
 }
 
+// At rest by virtual work: 2 g, and a load of up to 10 N at an arm of 1 m. A post beside it, of 2 kg, bears
+// half of its weight in every pose: to rounding of forces of 1e5 N that the legs have next to the flat one.
+TEST_CASE("beside legs at rest in a flat pose on the path a post and a growing load are known") {
+  std::string scene = parallelogram + smooth + R"toml([[forces]]
+kind = "load_over_time"
+nodes = ["B1"]
+force = [0, 0, -10]
+times = [0, 0.55, 0.65]
+values = [0, 0, 1]
+[[constraints]]
+kind = "plane"
+nodes = ["T"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "plane"
+nodes = ["T"]
+normal = [1, 0, 0]
+[solver]
+step = 0.01
+end_time = 0.7
+)toml";
+  scene.insert(scene.find("{name = \"B1\""),
+               R"({name = "S", position = [5, 0, 0], fixed = true}, {name = "T", position = [5, 0, 2]}, )");
+  scene.insert(scene.find("{nodes = [\"A0\", \"B0\"]"), R"({nodes = ["S", "T"], mass = 2}, )");
+  const Scene read = read_scene_text(scene, "s.toml", {});
+  const Simulation run = simulate_on_path(build_model(read), read.solver);
+  const Diagnostics d = diagnose(run);
+  int rests = 0;
+  for (std::size_t i = 0; i < d.t.size(); ++i) {
+    if (d.t[i] < 0.499) continue;
+    const auto row = static_cast<Index>(i);
+    CAPTURE(d.t[i]);
+    const double load = 10 * std::clamp((d.t[i] - 0.55) / 0.1, 0.0, 1.0);
+    CHECK(d.at("m.torque_N_m").values[i] == Approx(2 * 9.81 + load).epsilon(0).margin(1e-7));
+    CHECK(d.axial_force(row, 0) == Approx(-9.81).epsilon(0).margin(1e-6));
+    CHECK(d.force_unique(row, 0));
+    CHECK(d.axial_force.row(row).tail(3).array().isNaN().all());
+    ++rests;
+  }
+  CHECK(rests == 21);
+}
+
 }  // namespace driven_flat_pose_test
