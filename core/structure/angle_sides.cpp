@@ -91,6 +91,7 @@ Vec6 AngleSides::change(const double* u) const {
     for (int k = 0; k < 2; ++k) {
       const Vec3 d = part(q_, s, k), by = part(u, s, k);
       const Change length = root(dot_change(d, by, d, by));
+      if (!(length.value + length.change > 0)) continue;  // a side that is not cut
       out.segment<3>(3 * s) += share[static_cast<std::size_t>(k)] * (by - UnitVector(d).t * length.change) /
                                (length.value + length.change);
     }

@@ -150,4 +150,36 @@ TEST_CASE("the length between points closer than numbers can be squared has no c
   CHECK(length.curvature_along(q.data(), v.data()) == 2.0);
 }
 
+// Of large motions it is the difference of two values, up to turns, of which sums have quarters; of small
+// ones the first two terms of Taylor's series, where differences would have lost their digits.
+TEST_CASE("what a motion changes of a measure") {
+  std::mt19937 random(21);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Deployment fold;
+  fold.fold_sine = {{0, 2}, {Vec3(1, 2, -1), Vec3(0.5, 0, 1)}, 0.3};
+  fold.fold_cosine = {{1, 2}, {Vec3(-1, 1, 0.2), Vec3(0.1, 1, 0)}, 0.8};
+  for (const Measure& measure : one_of_each())
+    for (int trial = 0; trial < 20; ++trial) {
+      const VectorXd q = VectorXd::NullaryExpr(15, [&] { return any(random); }),
+                     v = VectorXd::NullaryExpr(15, [&] { return any(random); });
+      const MeasureFunction f(measure, fold);
+      const std::vector<int>& stencil = f.stencil();
+      const auto size = static_cast<Index>(stencil.size());
+      VectorXd gradient(size), along(size);
+      for (Index i = 0; i < size; ++i) along[i] = v[stencil[static_cast<std::size_t>(i)]];
+      const auto value = [&](const VectorXd& at) { return f.value_and_gradient(at.data(), gradient.data()); };
+      INFO("kind " << static_cast<int>(measure.kind) << " trial " << trial);
+      const VectorXd far = 0.4 * v, there = q + far;
+      const double after = value(there), before = value(q), sizes = gradient.cwiseAbs().dot(along.cwiseAbs());
+      const double off = f.change(q.data(), far.data()) - (after - before);
+      CHECK(std::abs(std::remainder(off, pi / 2)) <= 1e-11 * (1 + sizes));
+      const double h = 1e-7;
+      const VectorXd near = h * v;
+      const double series = h * gradient.dot(along) + 0.5 * h * h * f.curvature_along(q.data(), v.data());
+      // Third derivatives of angles are some (sizes)^3, of points near a line a hundred times as much.
+      const double next = 100 * std::pow(h * (1 + sizes), 3);
+      CHECK(std::abs(f.change(q.data(), near.data()) - series) <= 1e-13 * h * (1 + sizes) + next);
+    }
+}
+
 }  // namespace measure_curvature_test
