@@ -30,8 +30,7 @@ namespace {
 
 constexpr std::size_t most_candidates = most_tops, most_alone = 16;
 constexpr double good_constraint = 1e-4;  // of a rod's length: beyond it there is no motion of the structure
-// Of the largest velocity, what accelerations within a step may miss of its change: for the quintic, which is
-// cheap, and for a step of the method to each time.
+// Of the largest velocity, what accelerations in a step may miss of its change: for the quintic, for steps.
 constexpr double good_quintic = 1e-5, good_step = 0.1;
 constexpr double still = 1e-14, no_step = 1e-8;  // of the coordinates, of the longest step: rounding alone
 

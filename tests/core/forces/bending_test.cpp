@@ -215,8 +215,8 @@ TEST_CASE("bending: segments = k cuts a rod, and its first bending frequency is 
 
 // A chain of three tubes, its first joint driven, turns as rigid ones do but for what the bend stores, some
 // M^2 L / (E I) with M = 11 N m, L = 3.3 m, and of what steps as long leave of the work, a few parts in 10^4.
-// All energy is booked: of some 20 J turned over 1e-4 J are left, waves that turn up between step and step and
-// what these leave of lengths.
+// All energy is booked: of some 20 J turned over 1e-4 J are left, waves that turn up between step and step
+// and what these leave of lengths.
 TEST_CASE("bending: the work of drives beside waves that steps do not resolve") {
   const auto run = [](double E, const std::vector<std::string>& changes) {
     std::vector<std::string> all = {"structure.youngs_modulus=" + number(E)};
