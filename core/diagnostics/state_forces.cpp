@@ -20,7 +20,7 @@ constexpr double weak = 3, rough = 1e-6, rough_at_end = 1e-4;
 constexpr double negligible = 1e-8, harmless = 1e-6;
 
 // Weakness from which on rounding of a pose may count, and from which on it does, however smooth the forces.
-constexpr double may_count = 300, counts = 1e4;
+constexpr double may_count = 300, counts_surely = 1e4;
 
 const SolvedPoint nothing_known{};
 
@@ -119,7 +119,7 @@ bool StateForces::tells_nothing(std::size_t i, double weakness) {
   if (before.size() < 2) return false;
   if (rests(i, before) && rests(i, behind)) return true;
   const auto weak_too = [&](std::size_t k) {
-    return at(k).weakness > counts && std::isfinite(at(k).weakness);
+    return at(k).weakness > counts_surely && std::isfinite(at(k).weakness);
   };
   return weak_too(i) && std::ranges::all_of(before, weak_too) && std::ranges::all_of(behind, weak_too);
 }
