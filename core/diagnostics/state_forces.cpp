@@ -264,7 +264,7 @@ std::pair<std::size_t, std::size_t> undetermined_states(const Trajectory& trajec
   };
   StateForces forces(trajectory);
   VectorXd acceleration;
-  const std::size_t states = d.t.size() - d.left_open;
+  const std::size_t states = std::min(d.t.size() - d.left_open, trajectory.size());
   for (std::size_t first = 0, end = 0; first < states; first = std::max(end, first + 1)) {
     for (end = first; end < states && open(end);) ++end;
     if (end - first < fewest) continue;
