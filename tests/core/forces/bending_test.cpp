@@ -215,8 +215,8 @@ TEST_CASE("bending: segments = k cuts a rod, and its first bending frequency is 
 
 // A chain of three tubes, its first joint driven, turns as rigid ones do but for what the bend stores, some
 // M^2 L / (E I) with M = 11 N m, L = 3.3 m, and of what steps as long leave of the work, a few parts in 10^4.
-// All energy is booked: of some 20 J turned over 1e-4 J are left, waves that turn up between step and step
-// and what these leave of lengths.
+// All energy is booked: of some 20 J turned over 5e-5 J are left, waves that turn up between step and step,
+// and as much again where the stiffest rods give in the longest steps, whose lengths these waves leave open.
 TEST_CASE("bending: the work of drives beside waves that steps do not resolve") {
   const auto run = [](double E, const std::vector<std::string>& changes) {
     std::vector<std::string> all = {"structure.youngs_modulus=" + number(E)};
@@ -262,7 +262,9 @@ end_time = 0.5
         REQUIRE(bent.status == RunStatus::completed);
         const Diagnostics d = diagnose(bent);
         const double stored = 11.0 * 11.0 * 3.3 / (E * 5e-6);
-        CHECK(largest(d, "energy_balance_J") <= stored + 1e-4);
+        const bool open_lengths =
+            model == std::string("elastic") && E == 1e14 && solver == std::string("solver.step=0.01");
+        CHECK(largest(d, "energy_balance_J") <= stored + (open_lengths ? 1e-4 : 5e-5));
         double off = 0, told_off = 0, most = 0, pull_off = 0;
         for (std::size_t i = 0, j = 0; i < d.t.size(); ++i) {
           while (rigid.t[j] < d.t[i] - 1e-9) ++j;

@@ -20,6 +20,20 @@ Measure of_nodes(MeasureKind kind, std::vector<int> nodes, Vec3 axis = Vec3::Zer
   return m;
 }
 
+Deployment some_fold() {
+  Deployment fold;
+  fold.fold_sine = {{0, 2}, {Vec3(1, 2, -1), Vec3(0.5, 0, 1)}, 0.3};
+  fold.fold_cosine = {{1, 2}, {Vec3(-1, 1, 0.2), Vec3(0.1, 1, 0)}, 0.8};
+  return fold;
+}
+
+// What v has where f looks.
+VectorXd in_stencil(const MeasureFunction& f, const VectorXd& v) {
+  VectorXd out(std::ssize(f.stencil()));
+  for (Index i = 0; i < out.size(); ++i) out[i] = v[f.stencil()[static_cast<std::size_t>(i)]];
+  return out;
+}
+
 std::vector<Measure> one_of_each() {
   const Vec3 axis = Vec3(1, -2, 0.5).normalized();
   std::vector<Measure> all{of_nodes(MeasureKind::coordinate, {1}, axis),
@@ -49,20 +63,16 @@ std::vector<Measure> one_of_each() {
 TEST_CASE("the curvature of a measure along a line is that of its Hessian") {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> any(-1, 1);
-  Deployment fold;
-  fold.fold_sine = {{0, 2}, {Vec3(1, 2, -1), Vec3(0.5, 0, 1)}, 0.3};
-  fold.fold_cosine = {{1, 2}, {Vec3(-1, 1, 0.2), Vec3(0.1, 1, 0)}, 0.8};
+  const Deployment fold = some_fold();
   for (const Measure& measure : one_of_each())
     for (int trial = 0; trial < 20; ++trial) {
       const VectorXd q = VectorXd::NullaryExpr(15, [&] { return any(random); }),
                      v = VectorXd::NullaryExpr(15, [&] { return any(random); });
       const MeasureFunction f(measure, fold);
-      const std::vector<int>& stencil = f.stencil();
-      const auto size = static_cast<Index>(stencil.size());
+      const VectorXd along = in_stencil(f, v);
+      const Index size = along.size();
       MatrixXd hess(size, size);
       f.hessian(q.data(), hess.data());
-      VectorXd along(size);
-      for (Index i = 0; i < size; ++i) along[i] = v[stencil[static_cast<std::size_t>(i)]];
       const double by_hessian = along.dot(hess * along),
                    terms = along.cwiseAbs().dot(hess.cwiseAbs() * along.cwiseAbs());
       const double curvature = f.curvature_along(q.data(), v.data());
@@ -155,18 +165,14 @@ TEST_CASE("the length between points closer than numbers can be squared has no c
 TEST_CASE("what a motion changes of a measure") {
   std::mt19937 random(21);
   std::uniform_real_distribution<double> any(-1, 1);
-  Deployment fold;
-  fold.fold_sine = {{0, 2}, {Vec3(1, 2, -1), Vec3(0.5, 0, 1)}, 0.3};
-  fold.fold_cosine = {{1, 2}, {Vec3(-1, 1, 0.2), Vec3(0.1, 1, 0)}, 0.8};
+  const Deployment fold = some_fold();
   for (const Measure& measure : one_of_each())
     for (int trial = 0; trial < 20; ++trial) {
       const VectorXd q = VectorXd::NullaryExpr(15, [&] { return any(random); }),
                      v = VectorXd::NullaryExpr(15, [&] { return any(random); });
       const MeasureFunction f(measure, fold);
-      const std::vector<int>& stencil = f.stencil();
-      const auto size = static_cast<Index>(stencil.size());
-      VectorXd gradient(size), along(size);
-      for (Index i = 0; i < size; ++i) along[i] = v[stencil[static_cast<std::size_t>(i)]];
+      const VectorXd along = in_stencil(f, v);
+      VectorXd gradient(along.size());
       const auto value = [&](const VectorXd& at) { return f.value_and_gradient(at.data(), gradient.data()); };
       INFO("kind " << static_cast<int>(measure.kind) << " trial " << trial);
       const VectorXd far = 0.4 * v, there = q + far;
