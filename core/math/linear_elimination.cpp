@@ -145,18 +145,15 @@ std::vector<int> row_order(const SparseRows& A, const std::vector<char>& must) {
 
 }  // namespace
 
-LinearElimination eliminate(const SparseRows& A, const ConstVec& b, double tolerance,
-                            const DependsOn& depends) {
-  return eliminate_sparsely(A, b, {}, std::numeric_limits<Index>::max(), tolerance, depends);
+LinearElimination eliminate(const SparseRows& A, const ConstVec& b, double tolerance) {
+  return eliminate_sparsely(A, b, {}, std::numeric_limits<Index>::max(), tolerance);
 }
 
 LinearElimination eliminate_sparsely(const SparseRows& A, const ConstVec& b, const std::vector<char>& must,
-                                     Index limit, double tolerance, const DependsOn& depends) {
-  constexpr double doubtful = 1e-5;
+                                     Index limit, double tolerance) {
   const Index n = A.cols();
   LinearElimination result;
   Elimination elimination(A, must, limit);
-  std::vector<int> solved;
   for (const int r : row_order(A, must)) {
     Row row;
     double rhs = b[r];
@@ -165,14 +162,13 @@ LinearElimination eliminate_sparsely(const SparseRows& A, const ConstVec& b, con
     const double size = largest(row);
     elimination.reduce(row, rhs);
     std::erase_if(row, [&](const auto& e) { return std::abs(e.second) <= tolerance * size; });
-    if (depends && !row.empty() && largest(row) <= doubtful * size && depends(r, solved)) row.clear();
+    if (!row.empty()) result.least = std::min(result.least, largest(row) / size);
     if (row.empty()) {
       auto& list = std::abs(rhs) <= 1e-9 * std::max({1.0, size, std::abs(b[r])}) ? result.redundant
                                                                                  : result.inconsistent;
       list.push_back(r);
     } else if (const auto at = elimination.choose(row); at != row.end()) {
       elimination.solve(row, rhs, at);
-      solved.push_back(r);
     } else {
       result.kept.push_back(r);
     }

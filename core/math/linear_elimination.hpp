@@ -2,7 +2,6 @@
 // Exact elimination of sparse linear constraints A q = b: q = q_0 + B z.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,22 +16,19 @@ struct LinearElimination {
   std::vector<int> redundant;         // rows of A that follow from the others (consistent)
   std::vector<int> inconsistent;      // rows of A that contradict the others
   std::vector<int> kept;  // rows of A that were left as equations: q = q_0 + B z does not fulfil them
+  double least = 1;  // the smallest part that others left of a row's largest entry, of rows not redundant
 };
-
-// Whether a row of A follows from others of it [the rows that are solved so far].
-using DependsOn = std::function<bool(int row, const std::vector<int>& solved)>;
 
 // Gaussian elimination; a row whose entries all fall below tolerance * its original norm is dependent. Each
 // reduced row is solved for the coordinate that the fewest earlier rows hold, of those within half of its
 // largest entry (threshold pivoting, Markowitz 1957): chains of relations then stay short sums.
 // Where the rows solved so far nearly depend on each other, round-off in what is left of a dependent row
-// grows beyond that: `depends`, if given, says of rows of which less than 1e-5 is left whether they do.
-LinearElimination eliminate(const SparseRows& A, const ConstVec& b, double tolerance = 1e-11,
-                            const DependsOn& depends = {});
+// grows beyond that: `least` says so.
+LinearElimination eliminate(const SparseRows& A, const ConstVec& b, double tolerance = 1e-11);
 
 // The same, but rows are kept where solving them would let one free coordinate act on more than `limit`
 // others. Coordinates marked in `must` are solved for in any case (empty: none).
 LinearElimination eliminate_sparsely(const SparseRows& A, const ConstVec& b, const std::vector<char>& must,
-                                     Index limit, double tolerance = 1e-11, const DependsOn& depends = {});
+                                     Index limit, double tolerance = 1e-11);
 
 }  // namespace unfurl

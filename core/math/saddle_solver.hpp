@@ -51,6 +51,11 @@ class SaddleSolver {
   // then. Where doubles show a row that does, it is not looked any closer.
   bool all_independent(double least);
   Index rows_below_finely(double bound);
+  // As many rows as G^ has singular values below `bound` (1e-13 and more), counted in twice the digits by the
+  // inertia of K_e with e = -bound^2 (Sylvester), which no pivots in between can spoil: `guess` where it has
+  // that size, otherwise those of which the rows before them in the order of elimination leave least, in
+  // rising order.
+  std::vector<int> dependent_rows(double bound, const std::vector<int>& guess);
   // False where a row that is not known to be redundant may have a smaller one, by the factors in use. Of a
   // row that depends on others, c of each, they have e (1 + |c|^2): in doubt, ask for many e.
   bool shows_none_below(double bound) const;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "core/math/saddle_solver.hpp"
 #include "core/math/twofold_ldlt.hpp"
@@ -113,6 +114,30 @@ Index SaddleSolver::rows_below_finely(double bound) {
   for (Index r = 0; r < m_; ++r) below += fine_->pivot_of_row(place_of_row(r, safe_)) < bound ? 1 : 0;
   fine_ready_ = weakest_ <= clear_of_regularisation * regularisation_;
   return below;
+}
+
+std::vector<int> SaddleSolver::dependent_rows(double bound, const std::vector<int>& guess) {
+  constexpr double may_depend = 1e-4;  // of a row, whose square is a pivot
+  if (!factorise_finely()) return guess;
+  std::vector<std::pair<double, int>> left;  // of a combination of rows of unit length
+  for (Index r = 0; r < m_; ++r) {
+    const std::size_t place = place_of_row(r, safe_);
+    const double pivot = fine_->pivot_of_row(place);
+    if (pivot < may_depend) left.emplace_back(pivot / fine_->factors.pivot_rate(place), static_cast<int>(r));
+  }
+  std::vector<double> shift(fine_->shift);
+  for (Index r = 0; r < m_; ++r) shift[place_of_row(r, safe_)] = regularisation_ + bound * bound;
+  if (!fine_->factors.factorise(values_.data(), shift.data())) return guess;
+  std::size_t positive = 0;
+  for (Index k = 0; k < n_ + m_; ++k) positive += fine_->factors.pivot(k) > 0 ? 1 : 0;
+  fine_ready_ = false;
+  const auto wanted = std::min(positive - static_cast<std::size_t>(n_), left.size());
+  if (wanted == guess.size()) return guess;
+  std::ranges::sort(left);
+  std::vector<int> rows;
+  for (std::size_t k = 0; k < wanted; ++k) rows.push_back(left[k].second);
+  std::ranges::sort(rows);
+  return rows;
 }
 
 bool SaddleSolver::factorise_finely() {

@@ -93,48 +93,20 @@ std::vector<int> dependent_rows(const MatrixXd& G, const VectorXd& values) {
   return dependent;
 }
 
-// Whether a unit row of G is a sum of others, sum y_k g_k, which is known as well as 1e-16 |y|: x of
-//
-//     [ 1    G_k^T ] [x]   [g]
-//     [ G_k    0   ] [y] = [0]
-//
-// is what is left of it.
-bool depends(const SparseRows& G, int row, const std::vector<int>& others) {
-  constexpr double left = 1e-10;  // times |y|
-  if (others.empty()) return false;
-  const SparseRows across = without_round_off_transposed(picked_rows(G, others)), some = across.transpose();
-  SparseRows identity(G.cols(), G.cols());
-  identity.setIdentity();
-  SaddleSolver solver(identity, some);
-  if (!solver.factorise(some)) return false;
-  solver.weakest_pivot(100 * SaddleSolver::standard_regularisation);
-  VectorXd x(G.cols()), y(some.rows());
-  solver.solve(VectorXd(G.row(row).transpose()), VectorXd::Zero(y.size()), x, y, 40);
-  return x.norm() <= left * std::max(1.0, y.norm());
-}
-
-// Elimination in order fills the rows of a chain, of which none depends. Rows that it may doubt are as many
-// as factors in twice the digits say, or each is asked, which takes a factorisation.
+// Elimination in order fills the rows of a chain, of which none depends. Where it leaves so little of a row
+// that the row may depend, which ones do is what factors in twice the digits say.
 std::vector<int> dependent_rows(const SparseRows& G) {
   constexpr double weak = 1e-12;  // the square of a singular value of unit rows that elimination may doubt
-  constexpr double none = 1e-20;  // and of rounding
+  constexpr double doubtful = 1e-5;
   SparseRows identity(G.cols(), G.cols());
   identity.setIdentity();
   const SparseRows clean = without_round_off_transposed(G).transpose();
   SaddleSolver solver(identity, clean);
   const bool held = solver.factorise(clean);
   if (held && solver.all_independent(weak)) return {};
-  const auto eliminated = [&](const DependsOn& asked) {
-    return eliminate(G, VectorXd::Zero(G.rows()), dependent_row, asked).redundant;
-  };
-  bool doubts = false;
-  const auto mark = [&doubts](int, const std::vector<int>&) {
-    doubts = true;
-    return false;
-  };
-  const std::vector<int> dependent = eliminated(mark);
-  if (!doubts || (held && solver.rows_below_finely(none) == std::ssize(dependent))) return dependent;
-  return eliminated([&](int row, const std::vector<int>& others) { return depends(G, row, others); });
+  LinearElimination left = eliminate(G, VectorXd::Zero(G.rows()), dependent_row);
+  if (left.least > doubtful || !held) return left.redundant;
+  return solver.dependent_rows(dependent_row, left.redundant);
 }
 
 }  // namespace

@@ -225,6 +225,51 @@ TEST_CASE("the sparse analysis of redundant nets finds the three motions that th
   }
 }
 
+// 18 frameworks that nothing joins, of 3 x 3 x 2 nodes each, have as many motions and as many redundant rods
+// as each of them alone, whose 54 coordinates are counted by singular values. Nodes a little off a regular
+// lattice leave rows of which the rows before them nearly, but not quite, are sums.
+TEST_CASE("frameworks beside each other have the motions and the redundant rods of each alone") {
+  for (const double off : {1e-9, 1e-7, 1e-4, 1e-3, 0.02}) {
+    unsigned state = 5u;
+    const auto dice = [&state] {
+      state = state * 1664525u + 1013904223u;
+      return static_cast<double>(state >> 8) / (1 << 24);
+    };
+    CustomSpec all;
+    Index freedoms = 0;
+    std::size_t redundant = 0;
+    for (int copy = 0; copy < 18; ++copy) {
+      CustomSpec one;
+      const auto name = [copy](int node) { return std::to_string(copy) + "_" + std::to_string(node); };
+      for (int n = 0; n < 18; ++n)
+        one.nodes.push_back({name(n),
+                             Vec3(n % 3, n / 3 % 3, n / 9) +
+                                 off * Vec3(dice() - 0.5, dice() - 0.5, dice() - 0.5) +
+                                 Vec3(10.0 * copy, 0, 0),
+                             Vec3::Zero(), 0.1, n == copy});
+      for (int a = 0; a < 18; ++a)
+        for (int b = 0; b < a; ++b) {
+          const Vec3 way = one.nodes[static_cast<std::size_t>(a)].position -
+                           one.nodes[static_cast<std::size_t>(b)].position;
+          if (way.lpNorm<Eigen::Infinity>() < 1.5 && dice() < 0.7)
+            one.rods.push_back({"", {name(b), name(a)}, 0.1});
+        }
+      const Structure alone = build_custom(one);
+      const Mobility m = analyse_mobility(System(alone, true), node_positions(alone));
+      freedoms += m.degrees_of_freedom;
+      redundant += m.redundant.size();
+      all.nodes.insert(all.nodes.end(), one.nodes.begin(), one.nodes.end());
+      all.rods.insert(all.rods.end(), one.rods.begin(), one.rods.end());
+    }
+    INFO(off);
+    const Structure together = build_custom(all);
+    const Mobility m = analyse_mobility(System(together, true), node_positions(together));
+    CHECK(m.coordinates == 18 * 54);
+    CHECK(m.degrees_of_freedom == freedoms);
+    CHECK(m.redundant.size() == redundant);
+  }
+}
+
 // Two planes that enclose the angle 2 s have the singular values sqrt(1 - cos 2 s) = sqrt(2) sin s and
 // sqrt(1 + cos 2 s): however near to each other, they are two equations.
 TEST_CASE("planes that are nearly one are two equations") {
