@@ -13,6 +13,7 @@
 #include "core/diagnostics/columns.hpp"
 #include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/energy_flow.hpp"
+#include "core/diagnostics/fold_angle.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/reactions.hpp"
 #include "core/diagnostics/rod_strength.hpp"
@@ -34,20 +35,21 @@ struct Instant {
   std::size_t i;
   const State& state;
   const VectorXd &q, &v;           // node coordinates, velocities
-  const VectorXd &phi, &lengths;   // of all constraints [m]
+  const VectorXd& phi;             // of all constraints [m]
   const VectorXd& velocity_phi;    // G v of all constraints [m/s]
   const VectorXd& axial_force;     // of the solved rods [N]
   const std::vector<char>& shown;  // per solved rod
   const VectorXd& acceleration;    // of the nodes; NaN where the equations have no solution [m/s^2]
   const System& equations;         // that the state belongs to, near its angles
-  double fold_angle;               // [rad]
+  const FoldAngle& fold;
   const EnergyFlow& flow;
-  double first_energy;  // kinetic + potential at t = 0 [J]
+  double kinetic, potential;   // [J]
+  double first_energy;         // kinetic + potential at t = 0 [J]
+  double relative_constraint;  // the largest
 
   const System& system() const { return equations; }
   const Deployment& deployment() const { return run.trajectory.structure().deployment; }
   double work() const { return system().load_work(q) + flow.load_work[i]; }
-  double kinetic() const { return system().kinetic_energy(state.w); }
   // The largest sign * force of a rod that is shown; 0 of none, NaN where it is not known.
   double most_force(double sign) const {
     double most = -std::numeric_limits<double>::infinity();
@@ -74,7 +76,6 @@ struct Instant {
   double latch_load() const {
     return unfurl::latch_load(run.trajectory.model(i).structure, equations.moment(state.t), q, v);
   }
-  double relative_constraint() const { return max_norm(phi.cwiseQuotient(lengths)); }
 };
 
 // What a scene must have for a column to mean something.
@@ -101,9 +102,9 @@ constexpr double ulp = std::numeric_limits<double>::epsilon();
 
 const std::array rows{
     Row{"kinetic_energy_J", "kinetic energy", "J", Needs::nothing,
-        [](const Instant& s) { return s.kinetic(); }},
+        [](const Instant& s) { return s.kinetic; }},
     Row{"potential_energy_J", "potential energy", "J", Needs::nothing,
-        [](const Instant& s) { return s.system().potential_energy(s.q); }},
+        [](const Instant& s) { return s.potential; }},
     Row{"work_J", "work of loads and motors, of elastic cables and rods that change their lengths", "J",
         Needs::nothing, [](const Instant& s) { return s.work(); }},
     Row{"dissipated_J", "energy taken by dampers and friction", "J", Needs::dampers,
@@ -114,20 +115,19 @@ const std::array rows{
         [](const Instant& s) { return s.flow.impact_loss[s.i]; }},
     Row{"energy_balance_J", "energy balance", "J", Needs::nothing,
         [](const Instant& s) {
-          return s.kinetic() + s.system().potential_energy(s.q) - s.first_energy - s.work() +
-                 s.flow.dissipated[s.i] - s.flow.drive_work[s.i] + s.flow.impact_loss[s.i];
+          return s.kinetic + s.potential - s.first_energy - s.work() + s.flow.dissipated[s.i] -
+                 s.flow.drive_work[s.i] + s.flow.impact_loss[s.i];
         }},
     Row{"constraint_max_m", "constraint error", "m", Needs::nothing,
         [](const Instant& s) { return max_norm(s.phi); }},
     Row{"constraint_relative_max", "relative constraint error", "", Needs::nothing,
-        [](const Instant& s) { return s.relative_constraint(); }},
+        [](const Instant& s) { return s.relative_constraint; }},
     Row{"constraint_round_off_max", "constraint error in units of round-off", "ulp", Needs::nothing,
-        [](const Instant& s) { return s.relative_constraint() / ulp; }},
+        [](const Instant& s) { return s.relative_constraint / ulp; }},
     Row{"constraint_velocity_max_m_s", "velocity constraint error", "m/s", Needs::nothing,
         [](const Instant& s) { return max_norm(s.velocity_phi); }},
-    Row{"fold_angle_rad", "fold angle", "rad", Needs::fold, [](const Instant& s) { return s.fold_angle; }},
-    Row{"fold_rate_rad_s", "fold rate", "rad/s", Needs::fold,
-        [](const Instant& s) { return s.deployment().fold_rate(s.q, s.v); }},
+    Row{"fold_angle_rad", "fold angle", "rad", Needs::fold, [](const Instant& s) { return s.fold.angle(); }},
+    Row{"fold_rate_rad_s", "fold rate", "rad/s", Needs::fold, [](const Instant& s) { return s.fold.rate(); }},
     Row{"deployed_fraction", "deployed fraction", "", Needs::deployment,
         [](const Instant& s) { return s.deployment().fraction(s.q, s.state.angles); }},
     Row{"axial_force_max_N", "largest axial force", "N", Needs::nothing,
@@ -156,9 +156,9 @@ const std::array rows{
         [](const Instant& s) { return s.most_of_rods(1.0, buckling_ratio); }},
     // As scenes have it.
     Row{"fold_angle_deg", "fold angle", "deg", Needs::fold,
-        [](const Instant& s) { return s.fold_angle / radians_per_degree; }},
+        [](const Instant& s) { return s.fold.angle() / radians_per_degree; }},
     Row{"fold_rate_deg_s", "fold rate", "deg/s", Needs::fold,
-        [](const Instant& s) { return s.deployment().fold_rate(s.q, s.v) / radians_per_degree; }},
+        [](const Instant& s) { return s.fold.rate() / radians_per_degree; }},
 };
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -238,24 +238,6 @@ bool present(Needs needs, const Simulation& run) {
   }
   return true;
 }
-
-// The fold angle, which counts on where it passes half a turn.
-class FoldAngle {
- public:
-  explicit FoldAngle(const Deployment& deployment) : deployment_(deployment) {}
-  double at(double t, const VectorXd& q, const VectorXd& v) {
-    if (!deployment_.folds()) return nan;
-    const double angle = deployment_.fold_angle(q), rate = deployment_.fold_rate(q, v);
-    const double expected = std::isnan(t_) ? angle : angle_ + 0.5 * (t - t_) * (rate_ + rate);
-    t_ = t;
-    rate_ = rate;
-    return angle_ = angle - 2 * pi * std::round((angle - expected) / (2 * pi));
-  }
-
- private:
-  const Deployment& deployment_;
-  double t_ = nan, angle_ = nan, rate_ = nan;
-};
 
 // Per rod of the whole structure [N]: the multiplier of its row, or what its stretch tells.
 void axial_forces(const Model& model, const State& state, const VectorXd& q, const VectorXd& v,
@@ -348,23 +330,26 @@ class StateTable {
     system_->all_constraint_rates(state.t, q, v, velocity_phi_, scratch_);
     VectorXd lambda;
     if (!books_) lambda = find_forces(i, q, v);
-    if (i == 0) first_energy_ = system_->kinetic_energy(state.w) + system_->potential_energy(q);
-    const double angle = fold_.at(state.t, q, v);
+    const double kinetic = system_->kinetic_energy(state.w), potential = system_->potential_energy(q);
+    if (i == 0) first_energy_ = kinetic + potential;
+    fold_.go_to(state.t, q, v);
     const Instant instant{run_,
                           i,
                           state,
                           q,
                           v,
                           phi_,
-                          lengths_,
                           velocity_phi_,
                           force_,
                           out_.rod_shown,
                           acceleration_,
                           *system_,
-                          angle,
+                          fold_,
                           known_flow_ ? *known_flow_ : flow_.so_far(),
-                          first_energy_};
+                          kinetic,
+                          potential,
+                          first_energy_,
+                          max_norm(phi_.cwiseQuotient(lengths_))};
     out_.t.push_back(state.t);
     for (std::size_t c = 0; c < used_.size(); ++c) out_.columns[c].values.push_back(used_[c]->value(instant));
     if (books_) return;
