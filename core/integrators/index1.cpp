@@ -215,7 +215,7 @@ Index1Lanes::Index1Lanes(const System& system) : system_(system), one_(system_, 
 }
 
 void Index1Lanes::evaluate(std::span<const State* const> states) {
-  SaddleLanes::Vectors none, rows;
+  SaddleLanes::Vectors none, rows, own_acceleration, own_lambda;
   std::array<double, SaddleLanes::lanes> acts{};
   for (std::size_t k = 0; k < ok_.size(); ++k) {
     force_[k].resize(0);
@@ -227,19 +227,20 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
     force_[k] = one_.force_;
     acts[k] = largest_magnitude(one_.force_.data(), one_.force_.size());
     bias_[k] = one_.bias_;
+    own_acceleration[k].resize(force_[k].size());
+    own_lambda[k].resize(bias_[k].size());
     none[k] = none_;
     rows[k].noalias() = one_.G_ * mixed_;
   }
   lanes_.factorise();
   std::array<bool, SaddleLanes::lanes> alone{}, in_doubt{};
-  SaddleLanes::Vectors own_acceleration, own_lambda;
   for (std::size_t k = 0; k < states.size(); ++k) {
+    ok_[k] = true;
+    if (lanes_.shows_none_below(static_cast<int>(k), hidden, one_.saddle_)) continue;  // nor a smaller bound
     ok_[k] = lanes_.hand_over(static_cast<int>(k), one_.saddle_);
     if (!ok_[k]) continue;
     const double pivot = one_.saddle_.weakest_pivot(one_.weak_);
     in_doubt[k] = !one_.saddle_.shows_none_below(hidden);
-    own_acceleration[k].resize(force_[k].size());
-    own_lambda[k].resize(bias_[k].size());
     if (!(alone[k] = !one_.saddle_.in_first_order())) continue;
     if (one_.saddle_.fine()) {
       weakness_[k] = 1 / std::sqrt(pivot);

@@ -111,18 +111,27 @@ void SaddleLanes::settle_pivot(std::size_t k, const double* own, double* d) {
   }
 }
 
-bool SaddleLanes::hand_over(int lane, SaddleSolver& alone) const {
-  const auto take = [lane](const std::vector<double>& from, auto& to) {
-    for (std::size_t i = 0, size = from.size() / lane_count; i < size; ++i)
-      to.data()[i] = from[at(i) + static_cast<std::size_t>(lane)];
-  };
+void SaddleLanes::take(const std::vector<double>& from, int lane, double* to) {
+  for (std::size_t i = 0, size = from.size() / lane_count; i < size; ++i)
+    to[i] = from[at(i) + static_cast<std::size_t>(lane)];
+}
+
+bool SaddleLanes::shows_none_below(int lane, double bound, SaddleSolver& alone) const {
+  if (!ok(lane)) return false;
+  SaddleSolver::Factors& first = alone.sparse_ ? *alone.sparse_ : alone.safe_;
   alone.fine_ready_ = false;
-  take(row_scale_, alone.row_scale_);
-  take(values_, alone.values_);
+  take(pivot_, lane, first.ldlt.pivot_.data());
+  return (!alone.sparse_ || alone.first_serves(true)) && alone.shows_none_below(bound);
+}
+
+bool SaddleLanes::hand_over(int lane, SaddleSolver& alone) const {
+  alone.fine_ready_ = false;
+  take(row_scale_, lane, alone.row_scale_.data());
+  take(values_, lane, alone.values_.data());
   SparseLdlt& to = alone.sparse_ ? alone.sparse_->ldlt : alone.safe_.ldlt;
-  take(l_, to.l_);
-  take(pivot_, to.pivot_);
-  take(inverse_pivot_, to.inverse_pivot_);
+  take(l_, lane, to.l_.data());
+  take(pivot_, lane, to.pivot_.data());
+  take(inverse_pivot_, lane, to.inverse_pivot_.data());
   return alone.sparse_ ? alone.first_serves(ok(lane)) : ok(lane);
 }
 

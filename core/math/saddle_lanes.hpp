@@ -23,6 +23,9 @@ class SaddleLanes {
   void factorise();
   // Its factorisation held, and in the first order of `alone`: else solve() has nothing for it.
   bool ok(int lane) const { return ok_[static_cast<std::size_t>(lane)]; }
+  // Whether SaddleSolver::shows_none_below would say so of the lane, in its first order. `alone`, of whose
+  // factors the pivots alone are then right, is of no other use until something is handed over to it.
+  [[nodiscard]] bool shows_none_below(int lane, double bound, SaddleSolver& alone) const;
   // `alone` becomes what it would be had it factorised the lane's matrix. False where that broke down.
   [[nodiscard]] bool hand_over(int lane, SaddleSolver& alone) const;
   using Norms = std::array<double, lanes>;
@@ -30,6 +33,7 @@ class SaddleLanes {
   Norms solve(const Vectors& f, const Vectors& g, Vectors& x, Vectors& y, int max_refinements) const;
 
  private:
+  static void take(const std::vector<double>& from, int lane, double* to);
   Norms residual_norms(const double* r) const;
   template <int width>
   void eliminate();
