@@ -36,6 +36,7 @@ VectorXd start_positions(const Structure& structure) {
 struct Judged {
   const Model& model;
   Mobility mobility;
+  double smallest_singular_value;
   ForceBalance balance;
   std::vector<std::string> names;  // of all constraints
 
@@ -143,7 +144,7 @@ void print_json(const Scene& scene, const Judged& judged, const NearRods& near) 
                                  {"degrees_of_freedom", mobility.degrees_of_freedom},
                                  {"rigid_motions", mobility.rigid_motions},
                                  {"maxwell_count", mobility.count}};
-  json["smallest_singular_value"] = mobility.smallest_singular_value;
+  json["smallest_singular_value"] = judged.smallest_singular_value;
   json["clearance"] = clearance_json(near);
   json["unique_rods"] = judged.unique_rods();
   json["not_unique"] = nlohmann::ordered_json::array();
@@ -212,9 +213,9 @@ void print_table(const Scene& scene, const Judged& judged, const NearRods& near)
   print_row("constraints", mobility.constraints);
   print_row("rank", mobility.rank);
   print_row("by Maxwell's count", mobility.count);
-  if (!std::isnan(mobility.smallest_singular_value))
+  if (!std::isnan(judged.smallest_singular_value))
     std::cout << std::left << std::setw(24) << "smallest singular value" << std::right << std::setw(8)
-              << std::setprecision(3) << mobility.smallest_singular_value << "\n";
+              << std::setprecision(3) << judged.smallest_singular_value << "\n";
   print_clearance(near);
   print_forces(judged);
 }
@@ -237,7 +238,8 @@ int cmd_check(const Arguments& arguments) {
   Structure rods = rigid_twin(model->structure, start);
   System rows(rods, scene.solver.eliminate_linear);
   const Model mechanism{std::move(rods), std::move(rows)};
-  Judged judged{mechanism, mobility_of(mechanism, arguments), {}, mechanism.system.all_names()};
+  Judged judged{mechanism, mobility_of(mechanism, arguments), 0, {}, mechanism.system.all_names()};
+  judged.smallest_singular_value = smallest_singular_value(mechanism.system, start, judged.mobility.rank);
   judged.balance = force_balance(mechanism.system, start, judged.mobility, mechanism.structure.rods);
   for (const auto& note : model->structure.notes) std::cerr << "unfurl: warning: " << note << "\n";
   const InitialState at_start = initial_state(model->structure, model->system);

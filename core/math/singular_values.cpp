@@ -77,6 +77,18 @@ Index singular_values_above(const VectorXd& entries, double x) {
          static_cast<Index>(spectrum.below(Eigen::Array4d::Constant(x / spectrum.bound()))[0]);
 }
 
+Index rank_above(const MatrixXd& matrix, double x) {
+  return matrix.size() > 0 && matrix.allFinite() ? singular_values_above(bidiagonal_of(matrix), x) : 0;
+}
+
+Index rank_within(const MatrixXd& matrix, double share) {
+  if (matrix.size() == 0 || !matrix.allFinite()) return 0;
+  const VectorXd entries = bidiagonal_of(matrix);
+  const Index first[] = {0};
+  const double largest = singular_values_at(entries, first)[0];
+  return largest > 0 ? singular_values_above(entries, share * largest) : 0;
+}
+
 // Not Eigen's own decompositions: for the values alone they compile for half a minute. Its iteration for
 // tridiagonal matrices, which is quicker than bisection, now and then does not converge.
 VectorXd singular_values(const MatrixXd& matrix) {

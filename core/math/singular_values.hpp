@@ -28,4 +28,9 @@ VectorXd singular_values_at(const VectorXd& entries, std::span<const Index> whic
 /// How many singular values of a bidiagonal matrix are at least x > 0.
 Index singular_values_above(const VectorXd& entries, double x);
 
+/// How many of a dense matrix are, and how many are at least this share of the largest, for half the price of
+/// all. None where an entry is not finite.
+Index rank_above(const MatrixXd& matrix, double x);
+Index rank_within(const MatrixXd& matrix, double share);
+
 }  // namespace unfurl

@@ -148,8 +148,7 @@ Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std
     system.expand(trajectory.state(i).z, q);
     system.jacobian(q, G, scratch);
     scale_rows(G);
-    const VectorXd values = singular_values(MatrixXd(G));
-    if (values.size() > 0) rank = std::max(rank, Index((values.array() > no_rank * values[0]).count()));
+    rank = std::max(rank, rank_within(MatrixXd(G), no_rank));
   }
   return G.rows() - rank;
 }
@@ -170,9 +169,7 @@ bool singular_at_end(const Trajectory& trajectory, double flat) {
   if (large) return determined(last) < determined((first + last) / 2);
   system.jacobian(trajectory.node_positions(last), G, scratch);
   scale_rows(G);
-  const VectorXd values = singular_values(MatrixXd(G));
-  const Index rank = values.size() ? (values.array() > flat * values[0]).count() : 0;
-  return G.rows() - rank > structural_redundancy(trajectory, first, last);
+  return G.rows() - rank_within(MatrixXd(G), flat) > structural_redundancy(trajectory, first, last);
 }
 
 bool regular_when_deployed(Trajectory& trajectory, const State& event) {

@@ -45,9 +45,7 @@ bool can_turn(const Structure& structure, const MatrixXd& about) {
   MatrixXd rows(3 * static_cast<Index>(supports.size()), 6);
   for (std::size_t k = 0; k < supports.size(); ++k)
     set_rows(*supports[k], about.col(supports[k]->nodes[0]) / size, rows, 3 * static_cast<Index>(k));
-  const auto rank = [](const MatrixXd& A) {
-    return (singular_values(A).array() > 1e-9).count();  // entries are of size 1
-  };
+  const auto rank = [](const MatrixXd& A) { return rank_above(A, 1e-9); };  // entries are of size 1
   return rank(rows) - rank(rows.leftCols(3)) < 3;
 }
 

@@ -83,8 +83,8 @@ std::vector<int> dependent_rows(const MatrixXd& G, double negligible) {
 // Rows before a row may nearly depend on each other although all rows together do not; then round-off in what
 // is left of a dependent row exceeds the tolerance. The singular values do not suffer from this: they say how
 // many rows depend.
-std::vector<int> dependent_rows(const MatrixXd& G, const VectorXd& values) {
-  const Index wanted = G.rows() - (values.array() > dependent_row).count();
+std::vector<int> dependent_rows(const MatrixXd& G) {
+  const Index wanted = G.rows() - rank_above(G, dependent_row);
   std::vector<int> dependent;
   for (double negligible = dependent_row; negligible < 1e-4; negligible *= 10) {
     dependent = dependent_rows(G, negligible);
@@ -133,9 +133,7 @@ Index rigid_motions(const SparseRows& G, const ConstVec& q, const std::vector<in
   }
   // Rows of G have the length 1 and entries of R are below 1: round-off is 1e-15, a motion that a row forbids
   // 1e-3 and more.
-  const auto rank = [](const MatrixXd& A) {
-    return A.size() > 0 ? (singular_values(A).array() > 1e-9).count() : Index{0};
-  };
+  const auto rank = [](const MatrixXd& A) { return rank_above(A, 1e-9); };
   if (G.rows() == 0) return rank(R);
   MatrixXd all(q.size(), 6 + numbers);
   all << R, E;
@@ -148,12 +146,8 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
   const SparseRows G = picked_rows(unit_rows(system, q), counted);
   mobility.coordinates = G.cols();
   mobility.constraints = G.rows();
-  mobility.smallest_singular_value = std::numeric_limits<double>::quiet_NaN();
-
-  const bool dense = G.cols() <= max_dense_coordinates;
-  const MatrixXd full = dense ? MatrixXd(G) : MatrixXd();
-  const VectorXd values = singular_values(full);
-  const std::vector<int> dependent = dense ? dependent_rows(full, values) : dependent_rows(G);
+  const std::vector<int> dependent =
+      G.cols() <= max_dense_coordinates ? dependent_rows(MatrixXd(G)) : dependent_rows(G);
 
   mobility.rank = G.rows() - static_cast<Index>(dependent.size());
   mobility.degrees_of_freedom = mobility.coordinates - mobility.rank - system.integrals();
@@ -164,8 +158,13 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
     mobility.redundant_rows.push_back(counted[static_cast<std::size_t>(row)]);
     mobility.redundant.push_back(names[static_cast<std::size_t>(mobility.redundant_rows.back())]);
   }
-  if (dense && mobility.rank > 0) mobility.smallest_singular_value = values[mobility.rank - 1];
   return mobility;
+}
+
+double smallest_singular_value(const System& system, const ConstVec& q, Index rank) {
+  if (q.size() > max_dense_coordinates || rank == 0) return std::numeric_limits<double>::quiet_NaN();
+  const SparseRows G = picked_rows(unit_rows(system, q), counted_rows(system, q));
+  return singular_values(MatrixXd(G))[rank - 1];
 }
 
 }  // namespace unfurl

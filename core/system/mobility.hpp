@@ -27,9 +27,6 @@ struct Mobility {
   Index degrees_of_freedom = 0;        // coordinates - rank, but for the integrals of controllers
   Index count = 0;          // the same with constraints for rank: Maxwell's count, blind to redundant rows
   Index rigid_motions = 0;  // of the degrees of freedom: motions of the whole as one rigid body
-  // Of G with rows of unit length; how far the pose is from one in which more can move. NaN: too large a
-  // structure.
-  double smallest_singular_value = 0;
 };
 
 // The Jacobian of all constraints at the pose q [3 n], every row scaled to length 1; rows of zeros stay.
@@ -41,6 +38,9 @@ SparseRows picked_rows(const SparseRows& A, const std::vector<int>& rows);
 
 // At the pose q [3 n] of the solved nodes.
 Mobility analyse_mobility(const System& system, const ConstVec& q);
+// Of G, whose rank that is, with rows of unit length: how far the pose is from one in which more can move.
+// NaN: too large a structure.
+double smallest_singular_value(const System& system, const ConstVec& q, Index rank);
 
 // How many of the six rigid-body motions violate no constraint, of a structure that is not on one line: six
 // less the rank of G R, R = [translations, rotations]. Numbers of drives are nowhere in space and follow as

@@ -97,3 +97,28 @@ TEST_CASE("a matrix that is not finite has as many singular values as any other 
     for (const double value : values) CHECK(std::isnan(value));
   }
 }
+
+// Reflections leave singular values as they are: known ones on a diagonal, tall and wide.
+TEST_CASE("ranks are counts of the singular values that a matrix was made of") {
+  const auto reflection = [](Index n) {
+    VectorXd x(n);
+    for (Index i = 0; i < n; ++i) x[i] = 1.3 + std::sin(double(i * i));
+    return MatrixXd(MatrixXd::Identity(n, n) - 2.0 / x.squaredNorm() * x * x.transpose());
+  };
+  for (const auto& [rows, columns] : {std::pair<Index, Index>{6, 4}, {4, 6}, {5, 5}}) {
+    MatrixXd middle = MatrixXd::Zero(rows, columns);
+    middle.diagonal().head(4) << 20, 3, 1e-6, 0;
+    const MatrixXd A = reflection(rows) * middle * reflection(columns);
+    CHECK(rank_above(A, 5) == 1);
+    CHECK(rank_above(A, 1e-3) == 2);
+    CHECK(rank_above(A, 1e-12) == 3);  // round-off of 20 is 1e-15
+    CHECK(rank_within(A, 0.2) == 1);
+    CHECK(rank_within(A, 1e-7) == 2);  // of 20: 1e-6 is 5e-8
+    CHECK(rank_within(A, 1e-8) == 3);
+    CHECK(rank_within(MatrixXd::Zero(rows, columns), 1e-11) == 0);
+    CHECK(rank_within(MatrixXd::Constant(rows, columns, std::nan("")), 1e-11) == 0);
+    CHECK(rank_above(MatrixXd::Constant(rows, columns, std::nan("")), 1e-11) == 0);
+  }
+  CHECK(rank_above(MatrixXd(0, 3), 1e-11) == 0);
+  CHECK(rank_within(MatrixXd(3, 0), 1e-11) == 0);
+}
