@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -40,14 +41,13 @@ class CsvRows {
   void cell(const std::string& text) { append(csv_cell(text)); }
 
   void cell(double x) {
-    x += 0.0;  // a zero has no sign worth printing
     begin_cell();
-    if (x == 0) {
-      row_[used_++] = '0';
-      return;
-    }
-    if (x < 0) row_[used_++] = '-';
-    used_ += text_of(std::abs(x)).copy(row_.data() + used_, longest_number);
+    char* to = row_.data() + used_;
+    *to = '-';  // but for a zero, which has no sign worth printing
+    if (x < 0) ++to;
+    const Known& known = known_text(std::abs(x));
+    std::memcpy(to, known.text, sizeof known.text);  // the next cell covers what is too much of it
+    used_ = static_cast<std::size_t>(to - row_.data()) + known.size;
   }
   void flag(bool yes) {
     begin_cell();
@@ -78,15 +78,21 @@ class CsvRows {
  private:
   // Structures repeat themselves: a symmetric one writes the same number, or its negative, many times in a
   // row, and finding the shortest text of one costs twenty times as much as finding it again.
-  std::string_view text_of(double x) {
+  static constexpr std::size_t longest_number = 31;
+  struct Known {
+    std::uint64_t bits = 0;
+    unsigned char size = 1;
+    char text[longest_number] = {'0'};
+  };
+  const Known& known_text(double x) {
     const auto bits = std::bit_cast<std::uint64_t>(x);
     Known& known = known_[(bits * 0x9e3779b97f4a7c15ULL) >> 55U];
-    if (known.bits != bits || known.size == 0) {
+    if (known.bits != bits) {
       const char* const end = std::to_chars(known.text, known.text + longest_number, x).ptr;
       known.bits = bits;
       known.size = static_cast<unsigned char>(end - known.text);
     }
-    return {known.text, known.size};
+    return known;
   }
 
   // Behind a comma, with room for a number.
@@ -99,13 +105,6 @@ class CsvRows {
     if (row_.size() - used_ < text.size() + 64) row_.resize(2 * row_.size() + text.size() + 64);
     used_ += text.copy(row_.data() + used_, text.size());
   }
-
-  static constexpr std::size_t longest_number = 31;
-  struct Known {
-    std::uint64_t bits = 0;
-    unsigned char size = 0;  // 0: none
-    char text[longest_number];
-  };
 
   std::filesystem::path path_;
   std::FILE* file_ = nullptr;
