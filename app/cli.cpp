@@ -126,8 +126,11 @@ std::string verbs_that_take(std::string_view option) {
 
 // An option of another verb.
 void refuse_foreign_options(const CLI::App& parser, const Command& command) {
+  const auto given = parser.get_options([](const CLI::Option* option) { return option->count() > 0; });
   for (const OwnOption& own : own_options())
-    if (parser.count(std::string(own.name)) > 0 && !takes(command, own.name))
+    if (!takes(command, own.name) && std::ranges::any_of(given, [&](const CLI::Option* option) {
+          return option->check_name(std::string(own.name));
+        }))
       throw UsageError("unfurl " + std::string(command.name) + " has no option " + in_quotes(own.name) +
                        verbs_that_take(own.name));
 }
