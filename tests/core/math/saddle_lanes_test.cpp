@@ -55,6 +55,7 @@ SparseRows with_pattern(const MatrixXd& G, const MatrixXd& pattern) {
 TEST_CASE("a lane has the bits of a solver of its own, whatever lies in the others") {
   std::mt19937 random(20261122);
   std::uniform_real_distribution<double> uniform(-1, 1);
+  std::array<int, 2> shown{};  // how often there may be a pivot below a bound, and how often there is none
   for (int trial = 0; trial < 40; ++trial) {
     const MatrixXd pattern = random_pattern(random);
     MatrixXd M = MatrixXd::Zero(n, n);
@@ -85,6 +86,11 @@ TEST_CASE("a lane has the bits of a solver of its own, whatever lies in the othe
       const bool ok = alone.factorise(G[c]);
       const bool in_lane = ok && alone.in_first_order();
       REQUIRE(lanes.ok(static_cast<int>(c)) == in_lane);
+      for (const double bound : {1e-6, 1e-3, 0.03, 0.1}) {
+        const bool none = in_lane && alone.shows_none_below(bound);
+        CHECK(lanes.shows_none_below(static_cast<int>(c), bound, handed) == none);
+        ++shown[none ? 1 : 0];
+      }
       if (!in_lane) {
         CHECK(lanes.hand_over(static_cast<int>(c), handed) == ok);
         continue;
@@ -102,6 +108,8 @@ TEST_CASE("a lane has the bits of a solver of its own, whatever lies in the othe
       CHECK((same_bits(handed_y, one_y) || !one_y.allFinite()));
     }
   }
+  CHECK(shown[0] > 100);
+  CHECK(shown[1] > 100);
 }
 
 }  // namespace saddle_lanes_test
