@@ -11,9 +11,9 @@
 
 #include "core/constraints/linear_rows.hpp"
 #include "core/integrators/integrator.hpp"
-#include "core/math/barycentric.hpp"
 #include "core/math/factors.hpp"
 #include "core/math/lagrange.hpp"
+#include "core/simulate/across_pose.hpp"
 #include "core/simulate/elastic_period.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/run_words.hpp"
@@ -52,17 +52,18 @@ void Stepper::Loop::plan_anew() {
 
 // A longer step, as far as time has no edge, where this one begins or ends too close to a singular pose.
 // The grid goes on after that.
-void Stepper::Loop::step_over(Probe& to, double& h) {
+bool Stepper::Loop::step_over(Probe& to, double& h) {
   for (const double length : {1.41, 1.73, 1.19, 2.24, 1.09, 2.77, 1.57, 3.37}) {
-    if (now().t + length * h > grid_.next_edge(now().t)) continue;
+    if (now().t + length * h > std::min(until_, grid_.next_edge(now().t))) continue;
     Probe longer{.at = length * h, .state = now()};
     integrator_->restart();
     longer.report = take_step(*integrator_, longer.state, length * h);
     if (!longer.report.ok()) continue;
     part_end_ += (length - 1) * h;
     to = std::move(longer), h *= length;
-    return;
+    return true;
   }
+  return false;
 }
 
 namespace {
@@ -175,60 +176,12 @@ void Stepper::Loop::settle_in_pose(Probe& to, double h) {
   integrator->restart();
   if (!step(next, h).ok() &&
       !step_in_parts(*integrator, next, h, step).ok()) {  // as where a load begins there
-    to.report.weak_end = !barred;
+    to.report.weak_end = true;
     return;
   }
   to.state = std::move(settled);
   integrator_->restart();
 }
-
-namespace {
-
-// States of a step where none that ends there can be solved, next to a singular pose: on the polynomial
-// through those of the step's other lengths that can, or of steps from before it, on both sides of the pose.
-class AcrossPose {
- public:
-  using Step = std::function<bool(State& state, double length)>;
-
-  AcrossPose(const State& from, double longest, const Step& step) {
-    constexpr int lengths = 32;
-    solved_.push_back(from);
-    for (int k = 1; k <= lengths; ++k) {
-      State state = from;
-      if (step(state, longest * k / lengths)) solved_.push_back(std::move(state));
-    }
-  }
-
-  bool at(const System& system, double t, State& out) const {
-    constexpr std::size_t points = 9;
-    const auto behind =
-        std::partition_point(solved_.begin(), solved_.end(), [&](const State& state) { return state.t < t; });
-    if (behind == solved_.begin() || behind == solved_.end() || solved_.size() < points) return false;
-    const auto before = static_cast<std::size_t>(behind - solved_.begin());
-    const std::size_t first = std::min(before - std::min(before, points / 2), solved_.size() - points);
-    out = solved_[before - 1];
-    if (out.tension.size() > 0) return false;
-    const State left = out;
-    out.t = t;
-    out.z.setZero();
-    out.w.setZero();
-    VectorXd away(static_cast<Index>(points));
-    for (std::size_t a = 0; a < points; ++a) away[static_cast<Index>(a)] = solved_[first + a].t - t;
-    const VectorXd weights = Barycentric(away).values(0.0);
-    for (std::size_t a = 0; a < points; ++a) {
-      out.z += weights[static_cast<Index>(a)] * solved_[first + a].z;
-      out.w += weights[static_cast<Index>(a)] * solved_[first + a].w;
-    }
-    project(system, out);
-    if (system.followed_angles() > 0) system.at(left).count_on(out);
-    return true;
-  }
-
- private:
-  std::vector<State> solved_;  // in the order of time
-};
-
-}  // namespace
 
 // The first crossing up to `to`, in a step of size h.
 std::optional<Crossing> Stepper::Loop::find_crossing(Probe& to, double h) {
@@ -253,10 +206,13 @@ std::optional<Crossing> Stepper::Loop::find_crossing(Probe& to, double h) {
     } else if (!probe.report.ok()) {
       if (!across) {
         const double longest = 1.5 * std::max(h, to.at);  // beyond the run's end, and an edge of time
-        const std::shared_ptr<const Model> smooth = smooth_model(smooth_since());
+        const std::shared_ptr<const Model> smooth = smooth_model(run_.trajectory.time(smooth_since()));
         const auto integrator = fresh_integrator(*find_method(run_.options.method), smooth->system);
         const State from = far_off(*smooth, *integrator, h);
-        across.emplace(from, now().t - from.t + longest, [&](State& state, double part) {
+        constexpr int count = 32;
+        std::vector<double> lengths;
+        for (int k = 1; k <= count; ++k) lengths.push_back((now().t - from.t + longest) * k / count);
+        across.emplace(from, lengths, [&](State& state, double part) {
           integrator->restart();
           return integrator->step(state, part).ok();
         });

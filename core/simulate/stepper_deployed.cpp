@@ -118,7 +118,7 @@ State Stepper::Loop::far_off(const Model& smooth, Integrator& integrator, double
 
 // The end of a step over the pose that cannot be solved from the present state.
 void Stepper::Loop::step_from_far_off(Probe& to, double h) {
-  const std::shared_ptr<const Model> smooth = smooth_model(smooth_since());
+  const std::shared_ptr<const Model> smooth = smooth_model(run_.trajectory.time(smooth_since()));
   const auto integrator = fresh_integrator(*find_method(run_.options.method), smooth->system);
   Probe end{.at = h, .state = far_off(*smooth, *integrator, h)};
   end.report = step_in_parts(*integrator, end.state, now().t + h - end.state.t,
@@ -146,10 +146,10 @@ std::unique_ptr<Integrator> Stepper::Loop::careful(const Model& model) const {
   return fresh_integrator(method, model.system);
 }
 
-// By what is prescribed from a state on: what begins or ends there, or later, is nothing then.
-std::shared_ptr<const Model> Stepper::Loop::smooth_model(std::size_t first) const {
+// By what is prescribed from a time on: what begins or ends there, or later, is nothing then.
+std::shared_ptr<const Model> Stepper::Loop::smooth_model(double t) const {
   if (time_edges(model().structure, run_.options.step).empty()) return present_;
-  Structure structure = pieces_at(model().structure, run_.trajectory.time(first));
+  Structure structure = pieces_at(model().structure, t);
   System system(structure, run_.options.eliminate_linear);
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
 }
@@ -157,7 +157,7 @@ std::shared_ptr<const Model> Stepper::Loop::smooth_model(std::size_t first) cons
 // The model for states next to the pose, which no others tell of where the motion is smooth from there on.
 std::shared_ptr<const Model> Stepper::Loop::model_beside_pose(std::size_t first) {
   const bool nearby = first > 0 && fold(run_.trajectory.state(first)) < 1.1 * farthest_sample;
-  return nearby ? smooth_model(first) : present_;
+  return nearby ? smooth_model(run_.trajectory.time(first)) : present_;
 }
 
 // By shortened steps.
@@ -424,7 +424,9 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
     run_.warnings.push_back("at t = " + seconds(event.t) + ": the structure " + how);
   }
   if (run_.options.at_deployed == "pass" && held_.nodes.empty()) {
-    if (!to.report.ok() || (!regular_ && std::abs(fold(to.state)) < margin_)) step_over(to, h);
+    const bool in_it = ends_in_pose(to) || (!regular_ && std::abs(fold(to.state)) < margin_);
+    if ((!to.report.ok() || in_it) && !step_over(to, h))
+      end_in_pose(to, h, regular_ ? VectorXd() : event.lambda);
     if (!to.report.ok()) step_from_far_off(to, h);
     if (watched() && to.report.ok())
       if (auto crossing = find_crossing(to, h); crossing && side(*crossing, event, h) > 0) {

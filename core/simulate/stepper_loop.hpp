@@ -12,6 +12,7 @@
 
 #include "core/integrators/dvm.hpp"
 #include "core/integrators/integrator.hpp"
+#include "core/simulate/across_pose.hpp"
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/drift.hpp"
 #include "core/simulate/driven_deployed.hpp"
@@ -93,12 +94,13 @@ class Stepper::Loop {
   bool step() { return !ended_ && now().t < grid_.end() && go(next_target()); }
 
   bool advance_to(double t, const std::function<bool()>& cancelled) {
-    const double until = std::min(t, grid_.end());
-    while (!ended_ && now().t < until && !(cancelled && cancelled())) {
+    until_ = std::min(t, grid_.end());
+    while (!ended_ && now().t < until_ && !(cancelled && cancelled())) {
       TimeGrid::Target target = next_target();
-      if (target.t > until) target = {until, until - now().t};
+      if (target.t > until_) target = {until_, until_ - now().t};
       if (!go(target)) return false;
     }
+    until_ = grid_.end();
     return !ended_;
   }
 
@@ -166,7 +168,7 @@ class Stepper::Loop {
     if (to.report.weak_end) settle_in_pose(to, h);
     std::optional<State> event;
     if (!find_deployed(to, h, event)) return false;
-    if (!event && (!to.report.ok() || to.report.weak_end)) step_over(to, h);
+    if (!event && (!to.report.ok() || ends_in_pose(to)) && !step_over(to, h)) end_in_pose(to, h);
     if (watched() && (event || to.report.ok())) {
       Probe flat;
       const bool short_of = event && (led_way_ || !to.report.ok() || event->t > now().t + to.at);
@@ -209,12 +211,13 @@ class Stepper::Loop {
 
   void append(State state, const StepReport& report) {
     run_.trajectory.append(std::move(state), report);
+    behind_.reset();
     if (on_step) on_step(now(), report);
   }
 
   // What follows is no continuation of the states before.
   void append_after_impulse(State state) {
-    append(std::move(state), StepReport{});
+    append_behind(std::move(state));
     integrator_->restart();
     have_begin_ = false;
     new_motion_ = true;
@@ -237,6 +240,7 @@ class Stepper::Loop {
 
   StepReport take_step(Integrator& integrator, State& state, double h) {
     if (h < stepping::shortest * run_.options.step) return drift(system(), state, h);
+    if (in_pose_ && leave_pose(state, h)) return {};
     if (contradictions_) integrator.expect_contradictions();
     const StepReport report = integrator.step(state, h);
     run_.newton_iterations += report.newton_iterations;
@@ -284,37 +288,8 @@ class Stepper::Loop {
   // What comes of it that these have crossed, now; `left`: Crossing's. False where the run ends.
   bool act(const std::vector<std::size_t>& which, const VectorXd& left = {});
 
-  // Stops that are touched from the start, none of which is approached then.
-  bool rests_from_start() {
-    bool any = false;
-    for (std::size_t i = 0; i < sides_.stops().size(); ++i) {
-      if (!sides_.touches(i, system(), now())) continue;
-      any = true;
-      if (sides_.stops().gap_rate(i, system(), now()) < -sides_.zero_rate(i)) return false;
-    }
-    return any;
-  }
-
-  // Modes at the start of a run: of that impacts are events, and what rests on a stop. What cannot be ends it
-  // there.
-  void find_first_modes() try {
-    sides_.find_laws(system(), now());
-    sides_.touch(system(), now());
-    ModeChange change{.state = now()};  // the base is the model at the start
-    if (sides_.any_friction() || rests_from_start()) change = modes_after(now());
-    if (!change.failure.empty()) return ended_ = true, void(fail(change.failure));
-    record(change);
-    for (const std::size_t i : change.turned)
-      if (sides_.is_stop(i) && !change.strikes(i))
-        std::ranges::copy(sides_.events(i, start_), std::back_inserter(run_.events));
-    const bool struck = !change.impacts.empty();  // the state before it stays
-    if (sides_.any_active())
-      set_model(sides_.model(*base_), change.state, struck);
-    else if (struck)
-      append_after_impulse(hand_over(*base_, change.state, model()).state);
-  } catch (const CannotFactorise& error) {
-    ended_ = true, fail(error.what());
-  }
+  bool rests_from_start();
+  void find_first_modes();
 
   State in_base(const State& state) const { return in_coordinates(system(), state, base_->system); }
 
@@ -376,7 +351,7 @@ class Stepper::Loop {
     if (!handed_over) run_.trajectory.pop_back();  // the first state of all
     run_.trajectory.change_model(next);
     present_ = next;
-    append(std::move(state), StepReport{});
+    append_behind(std::move(state));
     model_changed();
   }
 
@@ -415,7 +390,7 @@ class Stepper::Loop {
   bool edge_comes_first(Probe& to, double h, std::optional<State>& event);
   bool singular_at(const State& state);
   std::unique_ptr<Integrator> careful(const Model& model) const;
-  std::shared_ptr<const Model> smooth_model(std::size_t first) const;
+  std::shared_ptr<const Model> smooth_model(double t) const;
   std::shared_ptr<const Model> model_beside_pose(std::size_t first);
   std::optional<State> locate_near(double h, bool touched = false);
   std::optional<State> locate_touched(const Dip& dip, double h);
@@ -441,7 +416,13 @@ class Stepper::Loop {
   void hold_nodes();
   void enter_held();
   bool gives_way(Probe& to);
-  void step_over(Probe& to, double& h);
+  bool step_over(Probe& to, double& h);
+  std::size_t clear_of(double t) const;
+  bool ends_in_pose(const Probe& to) const;
+  bool end_in_pose(Probe& to, double h, const VectorXd& lambda = {});
+  bool leave_pose(State& state, double h);
+  bool find_behind(const State& there);
+  void append_behind(State state);
 
   Simulation& run_;
   std::shared_ptr<const Model> original_;  // at the start
@@ -455,6 +436,7 @@ class Stepper::Loop {
   double start_;
   TimeGrid grid_;
   double target_ = 0, part_end_ = 0;  // of the present step, and of what is solved of it at once
+  double until_ = grid_.end();        // no step may go beyond it
   bool edge_ = false;                 // time has an edge at target_
   bool new_motion_ = false;           // rates or forces have jumped within the present step
   std::unique_ptr<Integrator> integrator_, probing_;
@@ -485,6 +467,8 @@ class Stepper::Loop {
   VectorXd q_;
   std::size_t new_ = 0, part_ = 0;    // first state that was not handed over, first of the present part
   double last_step_ = 0, swing_ = 0;  // of the control of steps: where that begins anew, Stepper's
+  std::optional<InPose> in_pose_;
+  std::optional<AcrossPose> behind_;  // the motion from there on, as long as the trajectory ends there
   bool latched_ = false;
   std::string locked_sides_;  // what was held when a latch locked it; empty: nothing was
   double locked_at_ = 0;

@@ -12,6 +12,38 @@
 
 namespace unfurl {
 
+// Stops that are touched from the start, none of which is approached then.
+bool Stepper::Loop::rests_from_start() {
+  bool any = false;
+  for (std::size_t i = 0; i < sides_.stops().size(); ++i) {
+    if (!sides_.touches(i, system(), now())) continue;
+    any = true;
+    if (sides_.stops().gap_rate(i, system(), now()) < -sides_.zero_rate(i)) return false;
+  }
+  return any;
+}
+
+// Modes at the start of a run: of that impacts are events, and what rests on a stop. What cannot be ends it
+// there.
+void Stepper::Loop::find_first_modes() try {
+  sides_.find_laws(system(), now());
+  sides_.touch(system(), now());
+  ModeChange change{.state = now()};  // the base is the model at the start
+  if (sides_.any_friction() || rests_from_start()) change = modes_after(now());
+  if (!change.failure.empty()) return ended_ = true, void(fail(change.failure));
+  record(change);
+  for (const std::size_t i : change.turned)
+    if (sides_.is_stop(i) && !change.strikes(i))
+      std::ranges::copy(sides_.events(i, start_), std::back_inserter(run_.events));
+  const bool struck = !change.impacts.empty();  // the state before it stays
+  if (sides_.any_active())
+    set_model(sides_.model(*base_), change.state, struck);
+  else if (struck)
+    append_after_impulse(hand_over(*base_, change.state, model()).state);
+} catch (const CannotFactorise& error) {
+  ended_ = true, fail(error.what());
+}
+
 // Of several that are set at one time all act at once: what gives way is found anew from where the first of
 // them found it, and what was gone through on the way is none of the motion. Where no modes are found the
 // next step says so, if the forces are still these.

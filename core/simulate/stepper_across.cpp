@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Steps that have to end in a singular pose, and the way on from there.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/constraints/linear_rows.hpp"
+#include "core/integrators/index1.hpp"
+#include "core/math/saddle_solver.hpp"
+#include "core/simulate/stepper_loop.hpp"
+
+namespace unfurl {
+namespace {
+
+constexpr int before_it = 8, behind_it = 6;  // states on both sides
+
+// How weakly rows hold a pose.
+class WeakRows {
+ public:
+  explicit WeakRows(const System& system)
+      : system_(system), jacobian_(system.jacobian_pattern()), saddle_(system.mass(), jacobian_) {}
+  Index below(const State& state, double bound) { return factorise(state) ? saddle_.rows_below(bound) : 0; }
+  double pivot(const State& state, double bound) {
+    return factorise(state) ? saddle_.weakest_pivot(bound) : bound;
+  }
+
+ private:
+  bool factorise(const State& state) {
+    q_.resize(system_.coordinates());
+    system_.expand(state.z, q_);
+    system_.jacobian(q_, jacobian_, scratch_);
+    return saddle_.factorise(jacobian_);
+  }
+
+  const System& system_;
+  SparseRows jacobian_;
+  SaddleSolver saddle_;
+  VectorXd q_;
+  std::vector<double> scratch_;
+};
+
+// To times around t, none nearer than half of what they are `apart`, as far as they are clear of the start.
+std::vector<double> lengths_around(double t, double apart, double from, double until) {
+  constexpr double clear = 0.3;
+  std::vector<double> lengths;
+  for (int k = -before_it;; ++k) {
+    const double length = t + (k + 0.5) * apart - from;
+    if (k >= behind_it && from + length > until) return lengths;
+    if (length > clear * apart) lengths.push_back(length);
+  }
+}
+
+// By steps no longer than a run's; of those that end too close to the pose other ones get through.
+AcrossPose::Step steps_of(Integrator& integrator, double longest) {
+  return [&integrator, longest](State& state, double length) {
+    const State start = state;
+    const int least = std::max(1, static_cast<int>(std::ceil(length / (1.5 * longest))));
+    for (const int count : {least, least + 1, least + 2}) {
+      state = start;
+      bool good = true;
+      for (int i = 0; i < count && good; ++i) {
+        integrator.restart();
+        const StepReport report = integrator.step(state, length / count);
+        good = report.ok() && !report.weak_end;
+      }
+      if (good) return true;
+    }
+    return false;
+  };
+}
+
+// From states before the pose.
+VectorXd multipliers_there(const System& smooth, const AcrossPose& across, const State& there) {
+  constexpr std::size_t nearer_by = 5;
+  System followed = smooth;
+  Index1 index1(followed, true);
+  std::vector<NearDeployed> before;
+  VectorXd acceleration(there.w.size());
+  for (State state : across.solved()) {
+    if (!(state.t < there.t)) break;
+    followed.follow(state);
+    if (index1.evaluate(state, acceleration, state.lambda))
+      before.push_back({there.t - state.t, std::move(state)});
+  }
+  followed.follow(there);
+  VectorXd lambda = there.lambda;
+  for (const std::size_t nearest : {before.size(), nearer_by}) {  // some may lie beside another pose
+    if (before.size() < std::max<std::size_t>(nearest, 3)) break;
+    before.erase(before.begin(), before.end() - static_cast<std::ptrdiff_t>(nearest));
+    lambda = multipliers_at_deployed(index1, before, there, 3);
+    if (!lambda.allFinite()) break;
+  }
+  return lambda;
+}
+
+}  // namespace
+
+// The last state that lies clear of the pose at the end of this step, as far back as the motion is smooth and
+// comes nearer to it.
+std::size_t Stepper::Loop::clear_of(double t) const {
+  constexpr double clear = 0.02 * 0.02;  // the square of a singular value
+  constexpr double longest = 60;         // steps
+  const double step = run_.options.step;
+  const std::size_t first = smooth_since();
+  WeakRows rows(system());
+  std::size_t i = run_.trajectory.size() - 1;
+  while (i > first && t - run_.trajectory.time(i) < 0.99 * step) --i;
+  double pivot = rows.pivot(run_.trajectory.state(i), clear);
+  while (i > first && pivot < clear && t - run_.trajectory.time(i) < longest * step) {
+    const double next = rows.pivot(run_.trajectory.state(i - 1), clear);
+    if (!(next > pivot)) break;
+    pivot = next, --i;
+  }
+  return i;
+}
+
+// A step that time ends in such a pose may be solved there, and tell rates with no digits: where drives lead
+// there it is no matter of chance.
+bool Stepper::Loop::ends_in_pose(const Probe& to) const {
+  constexpr double weak = 1e-10;
+  if (!to.report.ok() || to.report.weak_end) return to.report.weak_end;
+  if (part_end_ != target_ || !(edge_ || target_ >= until_) || system().drives().empty()) return false;
+  WeakRows rows(system());
+  const Index below = rows.below(to.state, weak);
+  return below > 0 && below > rows.below(run_.trajectory.state(clear_of(part_end_)), weak);
+}
+
+// As time has an edge in that pose, or the run its end: a step to it says nothing of the weak modes, and no
+// step sets out from it. But what leads there passes the pose as smoothly as if nothing began or ended in it;
+// so does what leads out of it, if it had come from before.
+bool Stepper::Loop::end_in_pose(Probe& to, double h, const VectorXd& lambda) {
+  constexpr double shortest = 0.1;  // of a step
+  const double t = now().t + h, step = run_.options.step;
+  const std::size_t first = smooth_since();
+  const State& from = run_.trajectory.state(clear_of(t));
+  const double apart = (t - from.t) / before_it;
+  if (!(t - from.t > shortest * step)) return false;
+  const std::shared_ptr<const Model> smooth = smooth_model(run_.trajectory.time(first));
+  const auto integrator = fresh_integrator(*find_method(run_.options.method), smooth->system);
+  const AcrossPose across(from, lengths_around(t, apart, from.t, 0), steps_of(*integrator, step));
+  State there;
+  if (!across.at(system(), t, there)) return false;
+  there.lambda = lambda.size() > 0 ? lambda : multipliers_there(smooth->system, across, there);
+  const auto& solved = across.solved();
+  const auto before =
+      std::ranges::find_if(solved, [&](const State& s) { return s.t > t - (before_it - 1) * apart; });
+  InPose pose{.t = t, .apart = apart, .before = t - before->t, .angles = before->angles};
+  for (VectorXd* x : {&pose.q, &pose.v, &pose.v_there}) x->resize(system().coordinates());
+  system().expand(before->z, pose.q);
+  system().expand_rate(before->w, pose.v);
+  system().expand_rate(there.w, pose.v_there);
+  in_pose_ = std::move(pose);
+  to = {.at = h, .state = std::move(there), .report = {.singular_event = true}};
+  integrator_->restart();
+  return true;
+}
+
+// The motion that goes on from a state in that pose, by what acts behind it.
+bool Stepper::Loop::find_behind(const State& there) {
+  constexpr int most = 8;
+  constexpr double enough = 1e-13, at_all = 1e-7;  // of the structure's size
+  const double t = there.t, d = in_pose_->before, step = run_.options.step,
+               size = reference_length(base_->structure);
+  const std::shared_ptr<const Model> smooth = smooth_model(t);
+  const System& system = smooth->system;
+  const auto integrator = fresh_integrator(*find_method(run_.options.method), system);
+  State from = there;
+  from.t = t - d;
+  from.lambda.setZero(system.constraints());
+  VectorXd v(system.coordinates());
+  system.expand_rate(there.w, v);
+  const VectorXd change = v - in_pose_->v_there;
+  from.z = system.reduce(in_pose_->q - d * change);
+  from.w = system.reduce_rate(in_pose_->v + change);
+  from.angles = in_pose_->angles;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < most; ++i) {
+    project(system, from);
+    AcrossPose across(from, lengths_around(t, in_pose_->apart, from.t, t + 2 * step),
+                      steps_of(*integrator, step));
+    State found;
+    if (!across.at(system, t, found)) break;
+    const VectorXd z = there.z - found.z, w = there.w - found.w;
+    const double off = std::max(z.lpNorm<Eigen::Infinity>(), step * w.lpNorm<Eigen::Infinity>());
+    if (!(off < least)) break;
+    least = off;
+    behind_ = std::move(across);
+    if (off <= enough * size) break;
+    from.w += w;
+    from.z += z - d * w;
+  }
+  if (!(least <= at_all * size)) behind_.reset();
+  return behind_.has_value();
+}
+
+// The state behind what has changed at once, or began to act: in such a pose its equations say nothing.
+void Stepper::Loop::append_behind(State state) {
+  if (!in_pose_ || !same_instant(in_pose_->t, state.t) || !find_behind(state))
+    return append(std::move(state), StepReport{});
+  state.lambda = multipliers_there(smooth_model(state.t)->system, *behind_, state);
+  append(std::move(state), {.singular_event = true});
+}
+
+// A step out of it, where the trajectory ends there.
+bool Stepper::Loop::leave_pose(State& state, double h) {
+  if (state.t != now().t) return false;
+  if (!same_instant(in_pose_->t, now().t) || (!behind_ && !find_behind(now())))
+    return in_pose_.reset(), false;
+  State out;
+  if (!behind_->at(system(), state.t + h, out)) return false;
+  VectorXd acceleration(out.w.size());
+  System followed = system();
+  followed.follow(out);
+  Index1 index1(followed, true);
+  if (!index1.evaluate(out, acceleration, out.lambda)) return false;
+  state = std::move(out);
+  return true;
+}
+
+}  // namespace unfurl
