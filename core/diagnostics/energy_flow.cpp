@@ -301,11 +301,12 @@ void EnergyMeter::smooth_ends(const State& a, const State& b) {
   by_b_ = by_rates_b + both;
 }
 
-void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b, bool singular_at_b) {
+void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b, bool singular_at_b,
+                      bool singular_at_a) {
   if (idle()) return;
   before_ = fresh_ && last_ == a.t ? std::move(after_) : at_state(a);
   after_ = at_b.known ? std::move(at_b) : at_state(b);
-  fresh_ = true, last_ = b.t, after_.known = after_.known && !singular_at_b;
+  fresh_ = true, last_ = b.t, before_.known &= !singular_at_a, after_.known &= !singular_at_b;
   const double h = b.t - a.t;
   const Index told = b.stage_tension.cols();
   if (told > 0 && told != own_.nodes.size()) own_ = gauss_legendre(static_cast<int>(told));
@@ -470,11 +471,10 @@ void RunEnergyFlow::step_to(std::size_t i, StateForces* forces) {
   for (auto& energy : flow_.of_drives) energy.push_back(energy.back());
   if (!booked_) return;
   const State &a = trajectory_.state(i - 1), &b = trajectory_.state(i);
-  const Model& model = trajectory_.model(i);
+  const Model &by = trajectory_.model(i - 1), &model = trajectory_.model(i);
   if (same_instant(a.t, b.t)) {  // an impulse; where time goes on a little, of a drive
-    const System& before = trajectory_.model(i - 1).system;
+    const System& before = by.system;
     const double gain = model.system.kinetic_energy(b.w) - before.kinetic_energy(a.w);
-    const Model& by = trajectory_.model(i - 1);
     const bool strikes = !by.structure.stops.empty() || !by.structure.deployment.empty();
     if (!explain_impulse(by, a, in_coordinates(model.system, b, before), gain) &&
         !explain_impulse(model, in_coordinates(before, a, model.system), b, gain)) {
@@ -491,7 +491,7 @@ void RunEnergyFlow::step_to(std::size_t i, StateForces* forces) {
   const double load_work = meter_->load_work, dissipated = meter_->dissipated,
                drive_work = meter_->drive_work;
   meter_->add(a, b, forces && !meter_->idle() ? forces->at(i) : SolvedPoint{},
-              trajectory_.report(i).singular_event);
+              trajectory_.report(i).singular_event, trajectory_.report(i - 1).singular_event);
   flow_.load_work.back() += meter_->load_work - load_work;
   flow_.dissipated.back() += meter_->dissipated - dissipated;
   flow_.drive_work.back() += meter_->drive_work - drive_work;

@@ -49,7 +49,8 @@ class EnergyMeter {
   bool idle() const { return !loads_ && !dampers_ && !drives_; }
   // The step from a to b, which follows on the last one; `at_b` where that is known of b already. In a
   // singular pose the equations do not say it.
-  void add(const State& a, const State& b, SolvedPoint at_b = {}, bool singular_at_b = false);
+  void add(const State& a, const State& b, SolvedPoint at_b = {}, bool singular_at_b = false,
+           bool singular_at_a = false);
   void jump() { fresh_ = false; }                        // velocities have changed within no time
   double load_work = 0, dissipated = 0, drive_work = 0;  // so far [J]
   // Told every point of the quadrature: its weight [s], the time, node coordinates, velocities, multipliers.

@@ -116,15 +116,19 @@ std::size_t Stepper::Loop::clear_of(double t) const {
   return i;
 }
 
-// A step that time ends in such a pose may be solved there, and tell rates with no digits: where drives lead
-// there it is no matter of chance.
+// A step that time or a switch ends in such a pose may be solved there, and tell rates with no digits: where
+// drives lead there it is no matter of chance.
 bool Stepper::Loop::ends_in_pose(const Probe& to) const {
   constexpr double weak = 1e-10;
   if (!to.report.ok() || to.report.weak_end) return to.report.weak_end;
-  if (part_end_ != target_ || !(edge_ || target_ >= until_) || system().drives().empty()) return false;
+  if (system().drives().empty()) return false;
   WeakRows rows(system());
   const Index below = rows.below(to.state, weak);
-  return below > 0 && below > rows.below(run_.trajectory.state(clear_of(part_end_)), weak);
+  return below > 0 && below > rows.below(run_.trajectory.state(clear_of(now().t + to.at)), weak);
+}
+bool Stepper::Loop::time_ends_in_pose(const Probe& to) const {
+  if (!to.report.ok() || to.report.weak_end) return to.report.weak_end;
+  return part_end_ == target_ && (edge_ || target_ >= until_) && ends_in_pose(to);
 }
 
 // As time has an edge in that pose, or the run its end: a step to it says nothing of the weak modes, and no
@@ -152,7 +156,7 @@ bool Stepper::Loop::end_in_pose(Probe& to, double h, const VectorXd& lambda) {
   system().expand_rate(before->w, pose.v);
   system().expand_rate(there.w, pose.v_there);
   in_pose_ = std::move(pose);
-  to = {.at = h, .state = std::move(there), .report = {.singular_event = true}};
+  to.at = h, to.state = std::move(there), to.report = {.singular_event = true};
   integrator_->restart();
   return true;
 }

@@ -424,7 +424,7 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
     run_.warnings.push_back("at t = " + seconds(event.t) + ": the structure " + how);
   }
   if (run_.options.at_deployed == "pass" && held_.nodes.empty()) {
-    const bool in_it = ends_in_pose(to) || (!regular_ && std::abs(fold(to.state)) < margin_);
+    const bool in_it = time_ends_in_pose(to) || (!regular_ && std::abs(fold(to.state)) < margin_);
     if ((!to.report.ok() || in_it) && !step_over(to, h))
       end_in_pose(to, h, regular_ ? VectorXd() : event.lambda);
     if (!to.report.ok()) step_from_far_off(to, h);

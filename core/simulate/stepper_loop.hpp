@@ -168,7 +168,7 @@ class Stepper::Loop {
     if (to.report.weak_end) settle_in_pose(to, h);
     std::optional<State> event;
     if (!find_deployed(to, h, event)) return false;
-    if (!event && (!to.report.ok() || ends_in_pose(to)) && !step_over(to, h)) end_in_pose(to, h);
+    if (!event && (!to.report.ok() || time_ends_in_pose(to)) && !step_over(to, h)) end_in_pose(to, h);
     if (watched() && (event || to.report.ok())) {
       Probe flat;
       const bool short_of = event && (led_way_ || !to.report.ok() || event->t > now().t + to.at);
@@ -239,7 +239,11 @@ class Stepper::Loop {
   // --- steps ---
 
   StepReport take_step(Integrator& integrator, State& state, double h) {
-    if (h < stepping::shortest * run_.options.step) return drift(system(), state, h);
+    if (h < stepping::shortest * run_.options.step) {
+      StepReport drifted = drift(system(), state, h);
+      drifted.singular_event = in_pose_ && same_instant(in_pose_->t, state.t);
+      return drifted;
+    }
     if (in_pose_ && leave_pose(state, h)) return {};
     if (contradictions_) integrator.expect_contradictions();
     const StepReport report = integrator.step(state, h);
@@ -419,6 +423,7 @@ class Stepper::Loop {
   bool step_over(Probe& to, double& h);
   std::size_t clear_of(double t) const;
   bool ends_in_pose(const Probe& to) const;
+  bool time_ends_in_pose(const Probe& to) const;
   bool end_in_pose(Probe& to, double h, const VectorXd& lambda = {});
   bool leave_pose(State& state, double h);
   bool find_behind(const State& there);
