@@ -15,6 +15,7 @@
 #include "core/math/lagrange.hpp"
 #include "core/math/saddle_solver.hpp"
 #include "core/simulate/deployed_event.hpp"
+#include "core/simulate/driven_parts.hpp"
 #include "core/simulate/free_motion.hpp"
 #include "core/simulate/held_nodes.hpp"
 #include "core/simulate/initial_state.hpp"
@@ -31,81 +32,13 @@ constexpr int around_pose = 8, before_pose = 12;
 constexpr double nothing_left = 1e-9;
 // Interpolated values are taken at once where the last degree changes them by less, of the structure's size.
 constexpr double settled_to = 1e-13;
-constexpr std::size_t most_back = 100;                        // states of the run that nodes are solved from
-constexpr double far_from_pose = 1e-2, clear_of_pose = 1e-3;  // of what remains
+constexpr std::size_t most_back = 100;  // states of the run that nodes are solved from
+constexpr double clear_of_pose = 1e-3;  // of what remains
 
 struct DrivenSample : State {
   VectorXd driven = {};  // of its rates what drives make of rest
 };
 using DrivenStates = std::vector<DrivenSample>;
-
-// The last state of the run that is not next to the pose, or its model's first.
-std::size_t far_state(const Trajectory& trajectory) {
-  const Model& model = trajectory.last_model();
-  VectorXd q(model.system.coordinates());
-  std::size_t i = trajectory.size() - 1;
-  for (;; --i) {
-    const State& state = trajectory.state(i);
-    model.system.expand(state.z, q);
-    if (i == 0 || &trajectory.model(i - 1) != &model ||
-        std::abs(model.structure.deployment.remaining(q, state.angles)) > far_from_pose)
-      return i;
-  }
-}
-
-// Of what is left to the deployed pose, by motions of some solved coordinates.
-class LeftRate {
- public:
-  explicit LeftRate(const Trajectory& trajectory) : model_(trajectory.last_model()) {
-    const State& state = trajectory.state(far_state(trajectory));
-    q_.resize(model_.system.coordinates());
-    v_.resize(q_.size());
-    model_.system.expand(state.z, q_);
-    any_.resize(model_.system.solved_coordinates());
-    for (Index k = 0; k < any_.size(); ++k) any_[k] = std::sin(1.0 + static_cast<double>(k));
-    all_ = std::abs(of(any_));
-  }
-  double of(const VectorXd& w) {
-    const Deployment& deployment = model_.structure.deployment;
-    model_.system.expand_rate(w, v_);
-    return deployment.folds() ? deployment.fold_rate(q_, v_) : deployment.remaining_rate(q_, v_);
-  }
-  // Does any motion of those that are 1 change it?
-  bool takes(const VectorXd& those) { return std::abs(of(those.cwiseProduct(any_))) > 1e-9 * all_; }
-
- private:
-  const Model& model_;
-  VectorXd q_, v_, any_;
-  double all_;
-};
-
-// What is interpolated: what drives alone move, where that says all of what is left; as in linkages that
-// float it does not, all that constraints join to what is left. The rest is free.
-struct DrivenParts {
-  std::vector<Index> free;
-  bool led;  // what is interpolated is known whatever acts
-};
-DrivenParts driven_parts(const Trajectory& trajectory) {
-  const System& system = trajectory.last_model().system;
-  const Index n = system.solved_coordinates();
-  DrivenParts out{free_coordinates(system, trajectory.state(far_state(trajectory))), true};
-  LeftRate left(trajectory);
-  VectorXd those = VectorXd::Zero(n);
-  those(out.free).setOnes();
-  if (!left.takes(those)) return out;
-  CoupledColumns columns(n);
-  columns.join_rows_of(system.jacobian_pattern());
-  std::map<Index, std::vector<Index>> sets;
-  for (Index i = 0; i < n; ++i) sets[columns.set_of(i)].push_back(i);
-  out = {{}, false};
-  for (const auto& [first, set] : sets) {
-    those.setZero();
-    those(set).setOnes();
-    if (!left.takes(those)) std::ranges::copy(set, std::back_inserter(out.free));
-  }
-  std::ranges::sort(out.free);
-  return out;
-}
 
 class DrivenLocator {
  public:
@@ -129,7 +62,7 @@ class DrivenLocator {
     const auto smooth = [&](std::size_t i) {
       const double before = trajectory.time(i - 1), after = trajectory.time(i);
       const auto edge = edge_after(edges, before_jump(before));
-      return &trajectory.model(i - 1) == &model_ && (parts_.led || !same_instant(before, after)) &&
+      return (parts_.led || (&trajectory.model(i - 1) == &model_ && !same_instant(before, after))) &&
              (edge == edges.end() || edge->t > before + 1e-6 * h);
     };
     while (first_ > 0 && trajectory.size() - first_ < most_back && smooth(first_)) --first_;
@@ -271,12 +204,12 @@ class DrivenLocator {
     }
     return true;
   }
-  const State& last_before(double t) const {
+  State last_before(double t) const {
     for (auto state = ahead_.rbegin(); state != ahead_.rend(); ++state)
       if (state->t < t) return *state;
     std::size_t i = trajectory_.size() - 1;
     while (i > first_ && !(trajectory_.time(i) < t)) --i;
-    return trajectory_.state(i);
+    return in_last_model(trajectory_, i);
   }
 
   // The pose's time by such states, once more where they lay around another.
@@ -327,7 +260,7 @@ class DrivenLocator {
     if (guess + (behind - count + 1) * apart < trajectory_.time(first_)) return false;
     for (int k = 0; k < count; ++k) {
       const double t = guess + (behind - (count - 1 - k)) * apart;
-      const State& last = last_before(t);
+      const State last = last_before(t);
       DrivenSample next{out.empty() || out.back().t < last.t ? last : State(out.back())};
       if (!step_to(next, t) || !put_on(next)) return false;
       out.push_back(std::move(next));
@@ -460,27 +393,6 @@ double next_prescribed_edge(const Trajectory& trajectory) {
       prescribed_edges(trajectory.last_model().structure, trajectory.options().step);
   const auto edge = edge_after(edges, trajectory.end_time());
   return edge == edges.end() ? std::numeric_limits<double>::infinity() : edge->t;
-}
-
-bool drives_lead_to_deployed(const Trajectory& trajectory) {
-  constexpr double none = 1e-6;  // of a rate
-  const Model& model = trajectory.last_model();
-  const Deployment& deployment = model.structure.deployment;
-  if (model.system.drives().empty() || deployment.empty()) return false;
-  const State& state = trajectory.state(far_state(trajectory));
-  VectorXd q(model.system.coordinates()), free(q.size());
-  model.system.expand(state.z, q);
-  for (Index k = 0; k < free.size(); ++k) free[k] = std::sin(1.0 + static_cast<double>(k));  // any motion
-  const System near = model.system.at(state);
-  const auto rate = [&](const VectorXd& v) {
-    return deployment.folds() ? deployment.fold_rate(q, v) : deployment.remaining_rate(q, v);
-  };
-  const auto fitted = [&](const VectorXd& v) {
-    VectorXd out(q.size());
-    near.expand_rate(fitted_rates(near, state.t, q, v), out);
-    return rate(out);
-  };
-  return std::abs(fitted(free) - fitted(VectorXd::Zero(q.size()))) <= none * std::abs(rate(free));
 }
 
 std::optional<DrivenDeployed> locate_driven(const Trajectory& trajectory,

@@ -10,6 +10,7 @@
 
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/simulate/stepper.hpp"
+#include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -318,6 +319,71 @@ TEST_CASE("a state in a flat pose that a drive leads through is given where it i
   }
   CHECK(whole.state().z == again.state().z);
   CHECK(whole.state().w == again.state().w);
+}
+
+namespace {
+
+// A body of 1 kg on a line beside the linkage that is stopped, or held back, from 0.5 s less `left` on.
+struct Stopped {
+  std::string scene;
+  double place, rate;  // of the body at 0.5 s
+};
+Stopped stopped(int how, double left) {
+  const double at = 0.5 - left, speed = how == 1 ? 4 * at : how == 2 ? -1 : 1;
+  const std::string k =
+      R"(, {name = "K", position = [4, 0, 0], mass = 1, velocity = [)" + testing::number(speed) + ", 0, 0]}";
+  const std::array<std::string, 3> by{
+      "[[constraints]]\nkind = \"coordinate_stop\"\nnodes = [\"K\"]\ndirection = [1, 0, 0]\nmax = " +
+          testing::number(4 + at) + "\n",
+      "[[forces]]\nkind = \"friction\"\nnodes = [\"K\"]\ndirection = [1, 0, 0]\nkinetic = 4\n",
+      "[[forces]]\nkind = \"spring\"\nnodes = [\"X\", \"K\"]\nstiffness = 100\ntension_only = true\n"
+      "free_length = " +
+          testing::number(5 + at) + "\n"};
+  const std::string line = "[[constraints]]\nkind = \"line\"\nnodes = [\"K\"]\ndirection = [1, 0, 0]\n";
+  Stopped out{linkage("times = [0, 0.5]\nvalues = [60, 0]", k) + line + by[static_cast<std::size_t>(how)],
+              how == 0   ? 4 + at
+              : how == 1 ? 4 + 2 * at * at
+                         : 4 - at - 0.1 * std::sin(10 * left),
+              how == 2 ? -std::cos(10 * left) : 0};
+  return out;
+}
+
+}  // namespace
+
+// The drive's torque there is that of its last acceleration. What rounding leaves of the rates of the last
+// states, 1e-16 / sine^2, is divided by their distance in it.
+TEST_CASE("what switches beside a drive before it comes to rest in a flat pose takes nothing from it") {
+  const double torque = 2 * weight + 5.0 / 3 * 6 * start / 0.25;
+  for (const int how : {0, 1, 2})
+    for (const double left : {0.012, 0.004, 1e-3, 1e-4, 1e-6})
+      for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
+               {"solver.stages=3"}, {"solver.stages=4"}, {"solver.step=0.0037"}, {"solver.step=0.001"}})
+        for (const char* then : {"stop", "pass"}) {
+          // Friction within a thousandth of a step of the pose counts as in it.
+          if (how == 1 && left < 1e-4) continue;
+          std::vector<std::string> changes = options;
+          changes.push_back("solver.at_deployed=\"" + std::string(then) + "\"");
+          changes.push_back("solver.end_time=0.6");
+          const auto& [scene, place, rate] = stopped(how, left);
+          const Simulation run = run_scene(scene, changes);
+          CAPTURE(how, left, changes, run.message);
+          REQUIRE(run.status == (std::string(then) == "stop" ? RunStatus::deployed : RunStatus::completed));
+          const Trajectory& t = run.trajectory;
+          std::size_t there = 0;
+          while (t.time(there) < 0.5) ++there;
+          CHECK(t.time(there) == 0.5);
+          const auto b = 3 * static_cast<Index>(node(t, "B1")), k = 3 * static_cast<Index>(node(t, "K"));
+          for (const std::size_t i : {there, t.size() - 1}) {
+            CHECK((Vec3(t.node_positions(i).segment<3>(b)) - Vec3(1.7, 0, 0)).norm() < 1e-8);
+            CHECK(t.node_velocities(i).segment<3>(b).norm() < 1e-6);
+          }
+          CHECK(t.node_positions(there)[k] == Approx(place).epsilon(0).margin(1e-8));
+          CHECK(t.node_velocities(there)[k] == Approx(rate).epsilon(0).margin(1e-6));
+          if (std::string(then) != "stop") continue;
+          const Diagnostics d = diagnose(run);
+          if (d.at("m.torque_unique").values.back() == 1)
+            CHECK(d.at("m.torque_N_m").values.back() == Approx(torque).epsilon(0).margin(0.01));
+        }
 }
 
 }  // namespace edge_in_flat_pose_test
