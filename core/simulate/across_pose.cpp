@@ -17,12 +17,12 @@ AcrossPose::AcrossPose(const State& from, const std::vector<double>& lengths, co
   }
 }
 
-bool AcrossPose::at(const System& system, double t, State& out) const {
+bool AcrossPose::at(const System& system, double t, State& out, bool behind) const {
   constexpr std::size_t points = 9;
-  const auto behind =
+  const auto next =
       std::partition_point(solved_.begin(), solved_.end(), [&](const State& state) { return state.t < t; });
-  if (behind == solved_.begin() || behind == solved_.end() || solved_.size() < points) return false;
-  const auto before = static_cast<std::size_t>(behind - solved_.begin());
+  if (next == solved_.begin() || (next == solved_.end()) != behind || solved_.size() < points) return false;
+  const auto before = static_cast<std::size_t>(next - solved_.begin());
   const std::size_t first = std::min(before - std::min(before, points / 2), solved_.size() - points);
   out = solved_[before - 1];
   if (out.tension.size() > 0) return false;

@@ -114,19 +114,11 @@ class DrivenLocator {
     DrivenStates samples{};
   };
 
-  // Where prescribed motions are at rest at the edge, what they drive is.
   void find_resting() {
-    rests_ = VectorXd::Zero(system_.solved_coordinates());
-    if (!std::isfinite(edge_)) return;
-    CoupledColumns columns(jacobian_.cols());
-    columns.join_rows_of(jacobian_);
-    VectorXd rate(system_.constraints()), moves = VectorXd::Zero(rests_.size());
-    system_.target_rate(edge_, rate);
-    for (int r = 0; r < jacobian_.outerSize(); ++r)
-      if (SparseRows::InnerIterator it(jacobian_, r); it && std::abs(rate[r]) * h_ > nothing_left)
-        moves[columns.set_of(it.col())] = 1;
-    for (Index i = 0; i < rests_.size(); ++i) rests_[i] = 1 - moves[columns.set_of(i)];
-    pose_rests_ = !LeftRate(trajectory_).takes(VectorXd::Ones(rests_.size()) - rests_);
+    rests_ = std::isfinite(edge_) ? resting_coordinates(system_, edge_, h_)
+                                  : VectorXd::Zero(system_.solved_coordinates());
+    pose_rests_ =
+        std::isfinite(edge_) && !LeftRate(trajectory_).takes(VectorXd::Ones(rests_.size()) - rests_);
   }
 
   // How far some coordinates depend on the highest degree.

@@ -5,9 +5,24 @@
 #include <string>
 #include <utility>
 
+#include "core/math/coupled_columns.hpp"
 #include "core/structure/time_edges.hpp"
 
 namespace unfurl {
+
+VectorXd resting_coordinates(const System& system, double t, double h) {
+  constexpr double still = 1e-9;  // [m], in a step
+  const SparseRows rows = system.jacobian_pattern();
+  CoupledColumns columns(rows.cols());
+  columns.join_rows_of(rows);
+  VectorXd rate(system.constraints()), moves = VectorXd::Zero(rows.cols()), rests = moves;
+  system.target_rate(t, rate);
+  for (int r = 0; r < rows.outerSize(); ++r)
+    if (SparseRows::InnerIterator it(rows, r); it && std::abs(rate[r]) * h > still)
+      moves[columns.set_of(it.col())] = 1;
+  for (Index i = 0; i < rests.size(); ++i) rests[i] = 1 - moves[columns.set_of(i)];
+  return rests;
+}
 
 std::vector<int> nodes_at_rest(const Model& model, const VectorXd& resting, double t, double h) {
   const auto& [structure, system] = model;

@@ -15,6 +15,9 @@ struct HeldNodes {
   VectorXd places;  // x, y and z of each
 };
 
+// 1 of the solved coordinates that nothing joins to a prescribed motion which is not at rest at the time t.
+VectorXd resting_coordinates(const System& system, double t, double h);
+
 // The nodes that only those solved coordinates move which are 1 of `resting`, where nothing that is
 // prescribed of these changes behind the time t, in steps of h.
 std::vector<int> nodes_at_rest(const Model& model, const VectorXd& resting, double t, double h);

@@ -9,6 +9,7 @@
 #include "core/constraints/linear_rows.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/math/saddle_solver.hpp"
+#include "core/simulate/free_motion.hpp"
 #include "core/simulate/stepper_loop.hpp"
 
 namespace unfurl {
@@ -143,9 +144,14 @@ bool Stepper::Loop::end_in_pose(Probe& to, double h, const VectorXd& lambda) {
   if (!(t - from.t > shortest * step)) return false;
   const std::shared_ptr<const Model> smooth = smooth_model(run_.trajectory.time(first));
   const auto integrator = fresh_integrator(*find_method(run_.options.method), smooth->system);
-  const AcrossPose across(from, lengths_around(t, apart, from.t, 0), steps_of(*integrator, step));
+  const VectorXd rests = deployment_.empty() && held_.places.size() == 0 ? find_resting(t) : VectorXd();
+  std::vector<double> lengths = lengths_around(t, apart, from.t, 0);
+  const bool slows = !held_.nodes.empty() && held_.places.size() == 0;
+  if (slows) std::erase_if(lengths, [&](double length) { return from.t + length > t; });
+  const AcrossPose across(from, lengths, steps_of(*integrator, step));
   State there;
-  if (!across.at(system(), t, there)) return false;
+  if (!across.at(system(), t, there, slows)) return false;
+  if (slows) there.w = (rests.array() > 0).select(0.0, there.w);
   there.lambda = lambda.size() > 0 ? lambda : multipliers_there(smooth->system, across, there);
   const auto& solved = across.solved();
   const auto before =
@@ -159,6 +165,23 @@ bool Stepper::Loop::end_in_pose(Probe& to, double h, const VectorXd& lambda) {
   to.at = h, to.state = std::move(there), to.report = {.singular_event = true};
   integrator_->restart();
   return true;
+}
+
+// What drives alone lead and have brought to rest at a time, for good, is held from then on. Its coordinates.
+VectorXd Stepper::Loop::find_resting(double t) {
+  const double edge = next_prescribed_edge(run_.trajectory), h = run_.options.step;
+  held_ = {};
+  if (!same_instant(t, edge)) return {};
+  VectorXd rests = resting_coordinates(system(), edge, h);
+  rests(free_coordinates(system(), run_.trajectory.state(clear_of(edge)))).setZero();
+  held_.nodes = nodes_at_rest(model(), rests, edge, h);
+  return rests;
+}
+void Stepper::Loop::rest_in_pose() {
+  if (held_.nodes.empty() || held_.places.size() > 0) return;
+  in_pose_.reset();
+  hold_deployed();
+  if (holds_) enter_held();
 }
 
 // The motion that goes on from a state in that pose, by what acts behind it.

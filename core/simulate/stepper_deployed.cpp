@@ -319,7 +319,7 @@ bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<Stat
 // where the run ends.
 bool Stepper::Loop::find_deployed(Probe& to, double& h, std::optional<State>& event) {
   led_off_ = 0;
-  if (!deployed_) held_ = {}, led_way_ = nullptr;
+  if (!deployed_ && !deployment_.empty()) held_ = {}, led_way_ = nullptr;
   if (rest_ahead_ && !deployed_ && goes_to_rest(h, event)) return true;
   if (!to.report.ok() && may_cross(1.5 * h) && !leads()) event = locate(h, now().t + 1.05 * h);
   if (!event && !to.report.ok()) {

@@ -187,6 +187,7 @@ class Stepper::Loop {
     have_begin_ = to.margins.size() > 0;
     if (have_begin_) begin_ = to;
     go_on(std::move(to.state), to.report);
+    if (in_pose_ && in_pose_->t == now().t) rest_in_pose();
     return true;
   }
 
@@ -425,6 +426,8 @@ class Stepper::Loop {
   bool ends_in_pose(const Probe& to) const;
   bool time_ends_in_pose(const Probe& to) const;
   bool end_in_pose(Probe& to, double h, const VectorXd& lambda = {});
+  VectorXd find_resting(double t);
+  void rest_in_pose();
   bool leave_pose(State& state, double h);
   bool find_behind(const State& there);
   void append_behind(State state);

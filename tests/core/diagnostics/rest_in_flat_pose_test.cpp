@@ -68,9 +68,8 @@ const std::string swinging = R"(, {name = "S", position = [0, 0, 5], fixed = tru
 }  // namespace
 
 // By virtual work the drive holds the weights at the ends of their arms, g (1/2 + 1/2 + 1) cos(angle): legs
-// by their middles, the coupler by its ends. Towards the flat pose the second leg's force has no bound: in
-// it B1 is 1e-8 m off, the root of rounding, on either side, and so is what the equations say of every force,
-// be it with a pendulum beside that moves on.
+// by their middles, the coupler by its ends. Towards the flat pose the second leg's force has no bound, and
+// in it the equations say nothing of it, be it with a pendulum beside that moves on.
 TEST_CASE("a drive that rests in a flat pose has no unique torque and rods no unique forces") {
   for (const bool beside : {false, true}) {
     Simulation run = run_scene(beside ? linkage(0, swinging, string) : linkage(0), {"solver.end_time=0.9"});
@@ -91,7 +90,9 @@ TEST_CASE("a drive that rests in a flat pose has no unique torque and rods no un
     CHECK(told == 0);
     for (Index r = 0; r < 3; ++r) CHECK_FALSE(d.force_unique(std::ssize(d.t) - 1, r));
     if (beside) CHECK(d.force_unique(std::ssize(d.t) - 1, 3));  // the pendulum's string
-    CHECK(undetermined(run, d).find("to 0.9 s") != std::string::npos);
+    CHECK(std::ranges::any_of(accuracy_warnings(run, d), [](const std::string& words) {
+      return words.find("grow without bound towards the pose at t = 0.7 s") != words.npos;
+    }));
   }
 }
 

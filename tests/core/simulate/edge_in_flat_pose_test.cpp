@@ -386,4 +386,39 @@ TEST_CASE("what switches beside a drive before it comes to rest in a flat pose t
         }
 }
 
+// What is interpolated in time up to there has the digits of states a step and more before. A body beside it
+// falls as it did.
+TEST_CASE("what a drive lays flat and holds rests there although no deployed pose is asked for") {
+  const std::string table = "times = [0, 0.5]\nvalues = [60, 0]";
+  for (const bool smooth : {false, true})
+    for (const std::vector<std::string>& how :
+         std::vector<std::vector<std::string>>{{"solver.stages=3"},
+                                               {"solver.stages=4"},
+                                               {"solver.step=0.0037"},
+                                               {"solver.step=0.02", "solver.stages=5"},
+                                               {"solver.step=0.005", "solver.stages=3"},
+                                               {"solver.step=0.001"}}) {
+      std::string text = linkage(table, beside, "", "\n");
+      if (smooth)
+        text.replace(text.find("motion = \"table\"\n" + table), 17 + table.size(),
+                     "motion = \"smooth\"\nto = 0\nduration = 0.5");
+      const Simulation run = run_scene(text, how);
+      CAPTURE(smooth, how, run.message);
+      REQUIRE(run.status == RunStatus::completed);
+      const Trajectory& t = run.trajectory;
+      const auto b = 3 * static_cast<Index>(node(t, "B1")), k = 3 * static_cast<Index>(node(t, "K"));
+      double place = 0, rate = 0;
+      for (std::size_t i = 0; i < t.size(); ++i) {
+        if (t.time(i) < 0.5) continue;
+        place = std::max(place, (Vec3(t.node_positions(i).segment<3>(b)) - Vec3(1.7, 0, 0)).norm());
+        rate = std::max(rate, t.node_velocities(i).segment<3>(b).norm());
+      }
+      CHECK(place < 1e-7);
+      CHECK(rate < 1e-9);
+      CHECK(testing::end_positions(run)[k + 2] == Approx(-0.5 * weight * 1.44).epsilon(0).margin(1e-9));
+      CHECK(
+          std::ranges::none_of(run.events, [](const Event& event) { return event.kind == "singular_pose"; }));
+    }
+}
+
 }  // namespace edge_in_flat_pose_test
