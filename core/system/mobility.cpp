@@ -12,13 +12,6 @@
 
 namespace unfurl {
 
-namespace {
-
-// Beyond this the dense analysis takes seconds (its cost is cubic): the sparse one finds the same rows.
-constexpr Index max_dense_coordinates = 900;
-
-}  // namespace
-
 double rounding_of_rows(const System& system, const ConstVec& q) {
   const Index in_space = q.size() / 3 - std::ssize(system.ghosts());  // these come last, and are nowhere
   if (in_space == 0) return 0;
@@ -58,40 +51,6 @@ SparseRows picked_rows(const SparseRows& A, const std::vector<int>& rows) {
 }
 
 namespace {
-
-// Gram-Schmidt over the rows from the first to the last, each row projected twice so that the basis stays
-// orthogonal to round-off.
-std::vector<int> dependent_rows(const MatrixXd& G, double negligible) {
-  std::vector<int> dependent;
-  MatrixXd basis(G.cols(), std::min(G.rows(), G.cols()));  // orthonormal columns
-  Index size = 0;
-  for (Index row = 0; row < G.rows(); ++row) {
-    VectorXd rest = G.row(row).transpose();
-    for (int pass = 0; pass < 2; ++pass) {
-      const VectorXd shares = basis.leftCols(size).transpose() * rest;
-      rest.noalias() -= basis.leftCols(size) * shares;
-    }
-    const double norm = rest.norm();
-    if (norm <= negligible || size == basis.cols())
-      dependent.push_back(static_cast<int>(row));
-    else
-      basis.col(size++) = rest / norm;
-  }
-  return dependent;
-}
-
-// Rows before a row may nearly depend on each other although all rows together do not; then round-off in what
-// is left of a dependent row exceeds the tolerance. The singular values do not suffer from this: they say how
-// many rows depend.
-std::vector<int> dependent_rows(const MatrixXd& G) {
-  const Index wanted = G.rows() - rank_above(G, dependent_row);
-  std::vector<int> dependent;
-  for (double negligible = dependent_row; negligible < 1e-4; negligible *= 10) {
-    dependent = dependent_rows(G, negligible);
-    if (static_cast<Index>(dependent.size()) >= wanted) break;
-  }
-  return dependent;
-}
 
 // Elimination in order fills the rows of a chain, of which none depends. Where it leaves so little of a row
 // that the row may depend, which ones do is what factors in twice the digits say.
@@ -146,8 +105,7 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
   const SparseRows G = picked_rows(unit_rows(system, q), counted);
   mobility.coordinates = G.cols();
   mobility.constraints = G.rows();
-  const std::vector<int> dependent =
-      G.cols() <= max_dense_coordinates ? dependent_rows(MatrixXd(G)) : dependent_rows(G);
+  const std::vector<int> dependent = dependent_rows(G);
 
   mobility.rank = G.rows() - static_cast<Index>(dependent.size());
   mobility.degrees_of_freedom = mobility.coordinates - mobility.rank - system.integrals();
@@ -162,6 +120,7 @@ Mobility analyse_mobility(const System& system, const ConstVec& q) {
 }
 
 double smallest_singular_value(const System& system, const ConstVec& q, Index rank) {
+  constexpr Index max_dense_coordinates = 900;  // beyond, it takes seconds: its cost is cubic
   if (q.size() > max_dense_coordinates || rank == 0) return std::numeric_limits<double>::quiet_NaN();
   const SparseRows G = picked_rows(unit_rows(system, q), counted_rows(system, q));
   return singular_values(MatrixXd(G))[rank - 1];
