@@ -22,6 +22,7 @@ class Index1 {
   // clean_multipliers: for reporting forces rather than for stepping; slower, with round-off in redundant
   // multipliers held at 1e-9 of their size instead of 1e-6.
   explicit Index1(const System& system, bool clean_multipliers = false);
+  const System& system() const { return system_; }
   // Let constraint errors decay at the rate alpha [1/s] (Baumgarte 1972).
   void stabilise(double alpha) { alpha_ = alpha; }
   // False where the factorisation broke down or the result is not finite.
