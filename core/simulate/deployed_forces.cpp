@@ -2,9 +2,11 @@
 // What poses next to the deployed one say of it.
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 #include <vector>
 
+#include "core/math/coupled_columns.hpp"
 #include "core/math/factors.hpp"
 #include "core/simulate/deployed_event.hpp"
 
@@ -162,14 +164,24 @@ bool grow(const std::vector<NearDeployed>& samples) {
   return size(samples.size() / 2) > much * size(0);
 }
 
-}  // namespace
+// Constraints that share no coordinate, be it through others, say nothing of each other's forces.
+std::vector<std::vector<Index>> joined_rows(const System& system) {
+  const SparseRows jacobian = system.jacobian_pattern();
+  CoupledColumns columns(jacobian.cols());
+  columns.join_rows_of(jacobian);
+  columns.join_rows_of(system.mass());
+  std::map<Index, std::vector<Index>> sets;
+  for (int r = 0; r < jacobian.outerSize(); ++r) {
+    const SparseRows::InnerIterator it(jacobian, r);
+    sets[it ? columns.set_of(it.col()) : -1].push_back(r);
+  }
+  std::vector<std::vector<Index>> out;
+  for (auto& set : sets) out.push_back(std::move(set.second));
+  return out;
+}
 
-// By the equations of the pose, with what acts just before it. Where nothing settles of what grows, nothing
-// is known. Beyond that, where fits that settle by themselves say something else than those that the
-// equations have corrected, they are right. Where multipliers grow without bound, the equations of the pose
-// lack what is left of them times a Jacobian that vanishes.
-VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at,
-                                 int poles) {
+// Of rows that are joined: from their samples, and `fits` of theirs that the equations have corrected.
+VectorXd joined_multipliers(std::vector<NearDeployed> samples, const std::vector<VectorXd>& fits, int poles) {
   constexpr double something_else = 1e-3, grows = 1e-4, wild = 10;
   Known bounded = Known::Constant(samples.front().state.lambda.size(), true);
   for (int order = poles; order > 0; --order) {
@@ -184,8 +196,6 @@ VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> sampl
   const double open = (own[nearest] - own[nearest - 1]).norm();
   if (open > something_else * own[nearest].norm() && grow(samples)) return known_of(own[nearest], !bounded);
   const std::size_t by_itself = settled_fit(own, most_open * own.back().norm());
-  std::vector<VectorXd> fits = own;
-  index1.correct(at, fits, other_force_before(index1, samples, at));
   const std::size_t best = settled_fit(fits, most_open * fits[0].norm());
   // Where the pose is so near to losing more of its rank that the equations say anything, they are left out.
   double next_to = 0;
@@ -194,6 +204,31 @@ VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> sampl
   const bool differ =
       by_itself > 0 && (fits[best] - own[by_itself]).norm() > something_else * own[by_itself].norm();
   return differ ? own[by_itself] : fits[best];
+}
+
+}  // namespace
+
+// By the equations of the pose, with what acts just before it. Where nothing settles of what grows, nothing
+// is known. Beyond that, where fits that settle by themselves say something else than those that the
+// equations have corrected, they are right. Where multipliers grow without bound, the equations of the pose
+// lack what is left of them times a Jacobian that vanishes. All of that by what is joined: a large force
+// elsewhere is no measure of it.
+VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> samples, const State& at,
+                                 int poles) {
+  std::vector<VectorXd> fits = multiplier_fits(samples, 0);
+  index1.correct(at, fits, other_force_before(index1, samples, at));
+  VectorXd out(samples.front().state.lambda.size());
+  for (const std::vector<Index>& rows : joined_rows(index1.system())) {
+    std::vector<NearDeployed> theirs;
+    for (const NearDeployed& sample : samples) {
+      theirs.push_back({sample.sine, {}});
+      theirs.back().state.lambda = sample.state.lambda(rows);
+    }
+    std::vector<VectorXd> their_fits;
+    for (const VectorXd& fit : fits) their_fits.push_back(fit(rows));
+    out(rows) = joined_multipliers(std::move(theirs), their_fits, poles);
+  }
+  return out;
 }
 
 }  // namespace unfurl
