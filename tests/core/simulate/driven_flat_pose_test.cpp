@@ -407,6 +407,40 @@ TEST_CASE("forces where a drive has come to rest in a flat pose are those of sta
   }
 }
 
+// By virtual work: weights of 0.5, 0.5 and 1 kg and the load rise by the legs' 1 m per radian. Accelerations
+// go with the cube root of rounding in what is left: 1e-5 of them.
+TEST_CASE(
+    "a torque in a flat pose is that of statics with a load that bends just before or a large one beside") {
+  const std::string load = R"(
+[[forces]]
+kind = "load_over_time"
+nodes = ["B1"]
+force = [0, 0, -10]
+values = [0, 1, 1]
+times = [0, )",
+                    post = R"(
+[[constraints]]
+kind = "plane"
+nodes = ["T"]
+normal = [1, 0, 0]
+[[loads]]
+nodes = ["T"]
+force = [0, 0, -1e6])",
+                    nodes = R"(, {name = "S", position = [25, 0, 0], fixed = true},
+  {name = "T", position = [25, 0, 1], mass = 1})",
+                    rods = R"(, {nodes = ["S", "T"], mass = 0})";
+  for (const bool beside : {false, true})
+    for (const char* bend : {"0.5", "0.99", "0.995"}) {
+      const Simulation run = run_scene(linkage(smooth(0) + load + bend + ", 2]" + (beside ? post : ""), 9.81,
+                                               beside ? nodes : "", beside ? rods : ""));
+      CAPTURE(beside, bend, run.message);
+      REQUIRE(run.status == RunStatus::deployed);
+      const Diagnostics of = diagnose(run);
+      CHECK(of.at("m.torque_unique").values.back() == 1);
+      CHECK(std::abs(of.at("m.torque_N_m").values.back()) == Approx(29.62).epsilon(0).margin(1e-3));
+    }
+}
+
 TEST_CASE("a ring whose mean angle a motor leads is deployed when that has come to its end") {
   const Scene scene = read_scene_file(find_scene("hoop6_motor"),
                                       {"structure.model=joints", "constraints[0].to=0",
