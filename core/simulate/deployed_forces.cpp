@@ -165,7 +165,7 @@ bool grow(const std::vector<NearDeployed>& samples) {
 }
 
 // Constraints that share no coordinate, be it through others, say nothing of each other's forces.
-std::vector<std::vector<Index>> joined_rows(const System& system) {
+std::vector<std::vector<Index>> rows_by_sets(const System& system) {
   const SparseRows jacobian = system.jacobian_pattern();
   CoupledColumns columns(jacobian.cols());
   columns.join_rows_of(jacobian);
@@ -218,7 +218,7 @@ VectorXd multipliers_at_deployed(Index1& index1, std::vector<NearDeployed> sampl
   std::vector<VectorXd> fits = multiplier_fits(samples, 0);
   index1.correct(at, fits, other_force_before(index1, samples, at));
   VectorXd out(samples.front().state.lambda.size());
-  for (const std::vector<Index>& rows : joined_rows(index1.system())) {
+  for (const std::vector<Index>& rows : rows_by_sets(index1.system())) {
     std::vector<NearDeployed> theirs;
     for (const NearDeployed& sample : samples) {
       theirs.push_back({sample.sine, {}});
