@@ -103,11 +103,13 @@ bool Index1::solve(double t, const ConstVec& w, MutVec acceleration, MutVec lamb
 
 // A weak direction that the pivots do not show (they are up to as many times the square of its singular value
 // as it has rows) is one that refinement does not reach. With the small regularisation such a direction is
-// that of a singular pose next by, and all that there is of it is round-off.
+// that of a singular pose next by, and all that there is of it is round-off. Where nothing moves, rows hold
+// none.
 void Index1::settle(const ConstVec& f, const ConstVec& g, MutVec x, MutVec y) {
   const double left = saddle_.solve(f, g, x, y, refinements());
   left_ = static_cast<float>(left);
-  if (clean_ && left > unsettled && !saddle_.fine() && saddle_.left_a_direction() &&
+  const auto still = [&] { return g.lpNorm<Eigen::Infinity>() <= unsettled * x.lpNorm<Eigen::Infinity>(); };
+  if (clean_ && left > unsettled && !saddle_.fine() && (still() || saddle_.left_a_direction()) &&
       saddle_.factorise_finely())
     saddle_.solve(f, g, x, y, refinements());
 }

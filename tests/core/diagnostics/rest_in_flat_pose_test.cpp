@@ -112,4 +112,55 @@ TEST_CASE("next to a flat pose a drive at rest has the torque of virtual work") 
   }
 }
 
+// A held crank O-A and two pairs of rods: A-B0-F0, and B0-B1-F1, of which B1 stands `off` the line from B0 to
+// F1. Statics of B1, with half of its rods' weights at it (there is no gravity), say what its two rods pull
+// with, known as well as the digits of its position say its angle: 1e-16 m / off.
+TEST_CASE("what rests next to a singular pose has the forces that statics says") {
+  const Vec3 F1(0.53237128, 0, -1.45102643), B0(0.49654751953623820, 0, 1.73130699188689090);
+  const Vec3 along = (B0 - F1).normalized(), across(-along[2], 0, along[0]);
+  for (const double off : {1e-3, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8}) {
+    const Vec3 B1 = F1 + 2.298 * along + off * across;
+    const auto run = run_scene(R"toml(
+[structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "X", position = [3.5, 0, 0], fixed = true},
+  {name = "F0", position = [-0.16161365349214307, 0, -0.6722391549860158], fixed = true},
+  {name = "F1", position = [0.53237128, 0, -1.45102643], fixed = true},
+  {name = "A", position = [-0.2130656636270988, 0, 1.1410216818981243]},
+  {name = "B0", position = [0.49654751953623820, 0, 1.73130699188689090], mass = 0.3},
+  {name = "B1", position = [)toml" +
+                               number(B1[0]) + ", 0, " + number(B1[2]) + R"toml(], mass = 3.8},
+  {name = "Z", position = [7, 0, 7], mass = 1}]
+rods = [{nodes = ["O", "A"], mass = 1.1}, {nodes = ["A", "B0"], mass = 7.3}, {nodes = ["F0", "B0"], mass = 0.2},
+  {nodes = ["B0", "B1"], mass = 0.4}, {nodes = ["F1", "B1"], mass = 0.1}]
+[gravity]
+acceleration = [0, 0, 0]
+[[constraints]]
+kind = "plane"
+nodes = ["*"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "angle"
+nodes = ["X", "O", "A"]
+axis = [0, -1, 0]
+[[loads]]
+nodes = ["A", "B0", "B1"]
+force = [0, 0, -40]
+[solver]
+step = 0.01
+stages = 4
+end_time = 0.1
+)toml");
+    INFO(off);
+    REQUIRE(run.status == RunStatus::completed);
+    const Diagnostics d = diagnose(run);
+    const Vec3 down = (F1 - B1).normalized(), up = (B0 - B1).normalized();
+    const double turn = up[0] * down[2] - up[2] * down[0];  // 40 N are up * B0-B1 + down * F1-B1
+    for (const Index i : {Index{2}, Index{5}, Index{9}}) {
+      CHECK(d.axial_force(i, 3) == Approx(-40 * down[0] / turn).epsilon(1e-15 / off + 1e-9));
+      CHECK(d.axial_force(i, 4) == Approx(40 * up[0] / turn).epsilon(1e-15 / off + 1e-9));
+    }
+  }
+}
+
 }  // namespace rest_in_flat_pose_test
