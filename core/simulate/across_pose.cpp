@@ -17,8 +17,7 @@ AcrossPose::AcrossPose(const State& from, const std::vector<double>& lengths, co
   }
 }
 
-bool AcrossPose::at(const System& system, double t, State& out, bool behind) const {
-  constexpr std::size_t points = 9;
+bool AcrossPose::at(const System& system, double t, State& out, bool behind, std::size_t points) const {
   const auto next =
       std::partition_point(solved_.begin(), solved_.end(), [&](const State& state) { return state.t < t; });
   if (next == solved_.begin() || (next == solved_.end()) != behind || solved_.size() < points) return false;

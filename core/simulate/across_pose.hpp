@@ -18,8 +18,9 @@ class AcrossPose {
 
   // By steps of these lengths from one state, which ascend.
   AcrossPose(const State& from, const std::vector<double>& lengths, const Step& step);
-  // False where too few were solved, or none on both sides, unless `behind` all of them is meant.
-  bool at(const System& system, double t, State& out, bool behind = false) const;
+  // By so many of them. False where fewer were solved, or none on both sides, unless `behind` all of them is
+  // meant.
+  bool at(const System& system, double t, State& out, bool behind = false, std::size_t points = 9) const;
   const std::vector<State>& solved() const { return solved_; }
 
  private:

@@ -137,6 +137,7 @@ bool Stepper::Loop::time_ends_in_pose(const Probe& to) const {
 // so does what leads out of it, if it had come from before.
 bool Stepper::Loop::end_in_pose(Probe& to, double h, const VectorXd& lambda) {
   constexpr double shortest = 0.1;  // of a step
+  constexpr double settled = 1e-6;  // of the structure's size
   const double t = now().t + h, step = run_.options.step;
   const std::size_t first = smooth_since();
   const State& from = run_.trajectory.state(clear_of(t));
@@ -151,6 +152,10 @@ bool Stepper::Loop::end_in_pose(Probe& to, double h, const VectorXd& lambda) {
   const AcrossPose across(from, lengths, steps_of(*integrator, step));
   State there;
   if (!across.at(system(), t, there, slows)) return false;
+  if (State fewer;
+      slows && (!across.at(system(), t, fewer, slows, 7) || !((there.z - fewer.z).lpNorm<Eigen::Infinity>() <=
+                                                              settled * reference_length(base_->structure))))
+    return false;  // a dead centre, to which rods turn by the root of the way that is left
   if (slows) there.w = (rests.array() > 0).select(0.0, there.w);
   there.lambda = lambda.size() > 0 ? lambda : multipliers_there(smooth->system, across, there);
   const auto& solved = across.solved();
