@@ -151,7 +151,7 @@ TEST_CASE("changed tables are neither merged nor joined") {
   fs::remove(dir / "s/.unfurl");  // of files that were gathered nobody knows
   CHECK(run_program(sweep + Words{dir / "other", "--merge", dir / "s"}).code == 0);
 
-  const Words join = sweep + Words{dir / "j", "--join"};
+  const Words join = sweep + Words{dir / "j", "--join", "--lease", "3"};
   REQUIRE(run_program(join).code == 0);
   CHECK(run_program({"verify", dir / "j"}).out.find("growing") == std::string::npos);
   std::string journal;
