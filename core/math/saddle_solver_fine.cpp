@@ -128,10 +128,10 @@ std::vector<int> SaddleSolver::dependent_rows(double bound, const std::vector<in
   std::vector<double> shift(fine_->shift);
   for (Index r = 0; r < m_; ++r) shift[place_of_row(r, safe_)] = regularisation_ + bound * bound;
   if (!fine_->factors.factorise(values_.data(), shift.data())) return guess;
-  std::size_t positive = 0;
-  for (Index k = 0; k < n_ + m_; ++k) positive += fine_->factors.pivot(k) > 0 ? 1 : 0;
+  Index below = -n_;  // as many pivots of the coordinates are positive
+  for (Index k = 0; k < n_ + m_; ++k) below += fine_->factors.pivot(k) > 0 ? 1 : 0;
   fine_ready_ = false;
-  const auto wanted = std::min(positive - static_cast<std::size_t>(n_), left.size());
+  const auto wanted = static_cast<std::size_t>(std::clamp(below, Index{0}, std::ssize(left)));
   if (wanted == guess.size()) return guess;
   std::ranges::sort(left);
   std::vector<int> rows;
