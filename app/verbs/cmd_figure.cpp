@@ -53,15 +53,24 @@ std::string too_large(const FigureKind& kind, const System& system) {
   const Index size = kind.name == "jacobian" ? std::max(system.coordinates(), system.all_constraints())
                                              : system.coordinates();
   if (size <= most) return "";
-  return ": it is drawn up to " + std::to_string(most) + " coordinates" +
+  return "it is drawn up to " + std::to_string(most) + " coordinates" +
          (kind.name == "jacobian" ? " and constraints" : "") + ", and the scene has " + std::to_string(size);
 }
 
 void require_data(const FigureKind& kind, const Scene& scene, const Simulation& run,
                   const Diagnostics& diagnostics) {
-  if (!kind.applies(run, diagnostics))
-    throw UsageError("the scene " + scene.name + " has no data for the figure " + in_quotes(kind.name) +
-                     too_large(kind, run.trajectory.model().system));
+  if (kind.applies(run, diagnostics)) return;
+  const std::string limit = too_large(kind, run.trajectory.model().system);
+  throw UsageError("the scene " + scene.name + " has no data for the figure " + in_quotes(kind.name) +
+                   (limit.empty() ? "" : ": " + limit));
+}
+
+void say_what_is_left_out(const std::vector<const FigureKind*>& kinds, const Simulation& run,
+                          const Diagnostics& diagnostics) {
+  for (const FigureKind* kind : kinds)
+    if (const std::string limit = too_large(*kind, run.trajectory.model().system);
+        !limit.empty() && !kind->applies(run, diagnostics))
+      std::cerr << "unfurl: " << kind->name << " is left out: " << limit << "\n";
 }
 
 // With what is written beside it.
@@ -93,6 +102,8 @@ int cmd_figure(const Arguments& arguments) {
   const Diagnostics diagnostics = judge_run(run);
   if (!asks_for_all(arguments))
     for (const FigureKind* kind : kinds) require_data(*kind, scene, run, diagnostics);
+  else if (!arguments.quiet)
+    say_what_is_left_out(kinds, run, diagnostics);
   const auto writer =
       context ? std::make_unique<FigureWriter>(*context, options) : std::make_unique<FigureWriter>(options);
   if (file) {

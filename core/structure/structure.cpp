@@ -211,4 +211,19 @@ VectorXd whole_velocities(const Structure& structure, const ConstVec& v) {
   return x;
 }
 
+GivenRod given_rod(const Structure& structure, std::size_t rod) {
+  GivenRod given;
+  std::size_t first = 0;
+  for (std::size_t r = 1; r <= rod; ++r)
+    if (structure.rods[r].whole.empty() || structure.rods[r].whole != structure.rods[first].whole)
+      first = r, ++given.place;
+  given.rod = structure.rods[first];
+  if (given.rod.whole.empty()) return given;
+  const Rod& last = structure.rods[first + static_cast<std::size_t>(given.rod.parts) - 1];
+  const double parts = given.rod.parts;
+  given.rod.b = last.b, given.rod.name = given.rod.whole;
+  given.rod.length *= parts, given.rod.mass *= parts, given.rod.free_length *= parts;
+  return given;
+}
+
 }  // namespace unfurl

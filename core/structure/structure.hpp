@@ -320,4 +320,12 @@ void show_cables(Structure& structure);
 VectorXd whole_positions(const Structure& structure, const ConstVec& q);
 VectorXd whole_velocities(const Structure& structure, const ConstVec& v);
 
+// Rod `rod` as it was given, where it is a part of one that was cut to bend: its place among those that were
+// given, and the whole of it, from the first node of its first part to the last one of its last.
+struct GivenRod {
+  std::size_t place = 0;
+  Rod rod;
+};
+GivenRod given_rod(const Structure& structure, std::size_t rod);
+
 }  // namespace unfurl

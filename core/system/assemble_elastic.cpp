@@ -289,8 +289,9 @@ void note_self_stress(Structure& structure, const System& system, const VectorXd
 void assemble_elastic(Structure& structure, bool eliminate_linear) {
   const int worst = furthest_off(structure);
   if (worst < 0) return;
-  const Rod& rod = structure.rods[static_cast<std::size_t>(worst)];
-  const std::string key = "rods[" + std::to_string(worst) + "].length";
+  const GivenRod given_one = given_rod(structure, static_cast<std::size_t>(worst));
+  const Rod& rod = given_one.rod;
+  const std::string key = "rods[" + std::to_string(given_one.place) + "].length";
   std::ostringstream off;
   off << "elastic rod " << rod.name << " is " << 100 * misfit(structure, rod)
       << " % off the distance of its nodes";

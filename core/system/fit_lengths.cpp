@@ -47,8 +47,8 @@ std::string said_of(const Structure& structure, const Rod& rod, const char* apar
   return text.str();
 }
 
-std::string length_key(std::size_t rod) {
-  return "rods[" + std::to_string(rod) + "].length";
+std::string length_key(const GivenRod& given) {
+  return "rods[" + std::to_string(given.place) + "].length";
 }
 
 }  // namespace
@@ -120,11 +120,13 @@ void fit_lengths(Structure& structure, bool eliminate_linear) {
   if (std::all_of(structure.rods.begin(), structure.rods.end(), [](const Rod& rod) { return rod.gives; }))
     return;
   const std::size_t worst = worst_rod(structure);
-  const Rod& rod = structure.rods[worst];
-  const double off = std::abs(node_distance_of(structure, rod) / rod.length - 1);
+  const Rod& part = structure.rods[worst];
+  const double off = std::abs(node_distance_of(structure, part) / part.length - 1);
   if (off <= fits) return;
+  const GivenRod given_one = given_rod(structure, worst);
+  const Rod& rod = given_one.rod;
   if (!(off <= fitted_share))
-    throw StructureError(length_key(worst),
+    throw StructureError(length_key(given_one),
                          said_of(structure, rod, " are ") +
                              "; nodes are moved for differences up to 1 % only: give positions that fit, or "
                              "leave the length out");
@@ -147,7 +149,7 @@ void fit_lengths(Structure& structure, bool eliminate_linear) {
   // Next to a singular pose lengths change with the square of a move: a hundredth asks for a seventh.
   if (!solved || !(most <= 0.2 * longest))
     throw StructureError(
-        length_key(worst),
+        length_key(given_one),
         said_of(structure, rod, " are ") +
             ", and no pose close to the given one has all the given lengths; mend the length "
             "or the positions, or free a constraint");

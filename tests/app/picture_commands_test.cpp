@@ -211,6 +211,16 @@ TEST_CASE("all figures go into a directory, those that the scene has data for") 
   CHECK_FALSE(fs::exists(dir / "figures/deployment.svg"));
 }
 
+TEST_CASE("of all figures those that a structure is too large for are named") {
+  const ScratchDirectory dir;
+  const ProgramResult r = run_program({"figure", "chain", "all", "--set", "structure.links=200", "--set",
+                                       "solver.end_time=0.002", "-o", dir / "figures"});
+  CHECK(r.code == 0);
+  CHECK_FALSE(fs::exists(dir / "figures/jacobian.svg"));
+  CHECK_THAT(r.err, Catch::Contains("unfurl: jacobian is left out: it is drawn up to 400 coordinates and "
+                                    "constraints, and the scene has "));
+}
+
 TEST_CASE("figures that cannot be made say why") {
   const ScratchDirectory dir;
   const auto error = [](const std::vector<std::string>& arguments) { return run_program(arguments); };

@@ -68,6 +68,24 @@ TEST_CASE("a length that is far off is refused with rod, length, distance and cu
     CHECK_THAT(text, Catch::Contains(part));
 }
 
+TEST_CASE("a length of a rod that is cut to bend is told as it was given") {
+  const std::string elastic = GENERATE("false", "true");
+  const std::string text = error_of(
+      "[structure]\nkind = \"custom\"\n"
+      "nodes = [{name = \"A\", position = [0, 0, 0]}, {name = \"B\", position = [1, 0, 0]}, "
+      "{name = \"C\", position = [3, 0, 0]}]\n"
+      "constraints = [{kind = \"fixed\", nodes = [\"A\"]}]\n"
+      "[[structure.rods]]\nnodes = [\"A\", \"B\"]\ndensity = 2700\narea = 1e-4\nyoungs_modulus = 7e10\n"
+      "second_moment = 1e-9\nsegments = 4\n"
+      "[[structure.rods]]\nnodes = [\"B\", \"C\"]\ndensity = 2700\narea = 1e-4\nyoungs_modulus = 7e10\n"
+      "second_moment = 1e-9\nsegments = 4\nlength = 2.5\nelastic = " +
+      elastic + "\n");
+  CHECK_THAT(text, Catch::Contains("structure.rods[1].length: "));
+  CHECK_THAT(text, Catch::Contains("rod B-C "));
+  CHECK_THAT(
+      text, Catch::Contains(elastic == "true" ? "20 %" : "a length of 2.5 m, but its nodes B and C are 2 m"));
+}
+
 TEST_CASE("lengths without a pose are refused by name") {
   // With the brace O-B the frame is rigid but for nothing: another brace from Q must have the length sqrt(5).
   const auto brace = [](const char* nodes, const char* length) {
