@@ -73,6 +73,13 @@ std::vector<std::string> ffmpeg_arguments(const std::string& file, int width, in
 // A program that takes no frame, or does not write on after the last one, for so long hangs [s].
 constexpr int longest_silence = 60;
 
+// ffmpeg does not say why it could not write; a page of a file system or more is left where something can be.
+bool is_full(const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto left = std::filesystem::space(folder.empty() ? "." : folder, error);
+  return !error && left.available < 4096;
+}
+
 }  // namespace
 
 bool ffmpeg_available() {
@@ -176,6 +183,8 @@ std::string Mp4Pipe::finish() {
   if (!p.problem.empty()) p.ffmpeg.send(SIGKILL);
   const int code = p.file ? p.wait_for_end() : -1;
   if (p.problem.empty() && code != 0) p.problem = "ffmpeg failed";
+  if (!p.problem.empty() && p.file && is_full(p.file->name().parent_path()))
+    p.problem += ": no space left on device";
   try {
     if (p.problem.empty()) p.file->commit();
   } catch (const FileError& error) {

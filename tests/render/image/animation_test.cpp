@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <random>
 
 #include "core/export/atomic_file.hpp"
 #include "render/image/mp4_pipe.hpp"
@@ -215,6 +216,32 @@ TEST_CASE("an MP4 goes into a folder of any name") {
     CHECK(fs::exists(fs::path(folder) / "a.mp4"));
   }
   fs::current_path(here);
+}
+
+TEST_CASE("an MP4 for which the disk has no room says so") {
+  if (testing::lacks(ffmpeg_available(), "MP4 (apt-get install ffmpeg)")) return;
+  const ScratchFolder scratch;
+  const std::string folder = scratch.path.string();
+  if (testing::lacks(
+          std::system(("mount -t tmpfs -o size=16k tmpfs " + folder + " 2>/dev/null").c_str()) == 0,
+          "a small file system (root may mount one)"))
+    return;
+  std::string error;
+  {
+    Mp4Pipe film(scratch.path / "a.mp4", 640, 480, 25.0);
+    std::mt19937 random(7);  // noise is what does not shrink: some 100 kB a frame
+    for (int k = 0; k < 3; ++k) {
+      Image noise{640, 480, {}};
+      for (int i = 0; i < 4 * 640 * 480; ++i) noise.rgba.push_back(static_cast<std::uint8_t>(random()));
+      film.add(noise);
+    }
+    error = film.finish();
+  }
+  const bool empty = fs::is_empty(scratch.path);
+  REQUIRE(std::system(("umount " + folder).c_str()) == 0);
+  CHECK_THAT(error, Catch::StartsWith("no MP4 was written: ffmpeg ") &&
+                        Catch::EndsWith(": no space left on device"));
+  CHECK(empty);
 }
 
 TEST_CASE("an MP4 that fails is a warning and leaves nothing behind") {
