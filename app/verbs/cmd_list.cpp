@@ -117,13 +117,12 @@ constexpr std::string_view entry_note =
     "there.";
 
 constexpr std::string_view column_note =
-    "A drive NAME adds NAME.angle_rad, NAME.angle_deg, NAME.torque_N_m and NAME.power_W (of a length "
-    "NAME.value_m and NAME.force_N), a support NAME.reaction_N with _x_N, _y_N, _z_N and _unique, a "
-    "structure its own lengths (column_pitch_m) and surfaces (surface_rms_m of a mesh_reflector: what its "
-    "front "
-    "net is off the paraboloid). Energies of dampers, drives and impacts "
-    "and what belongs to "
-    "a fold angle are there where the scene has them.";
+    "A drive, motor or winch NAME adds NAME.angle_rad, NAME.angle_deg, NAME.torque_N_m and "
+    "NAME.torque_unique (of a length NAME.value_m, NAME.force_N and NAME.force_unique), NAME.power_W and "
+    "NAME.energy_J; a support NAME.reaction_N, NAME.reaction_x_N, _y_N, _z_N and NAME.reaction_unique; a "
+    "structure its own lengths (column_pitch_m and row_pitch_m of a reentrant_sheet, and its poisson_ratio) "
+    "and surfaces (surface_rms_m of a mesh_reflector: what its front net is off the paraboloid). Energies "
+    "of dampers, drives and impacts and what belongs to a fold angle are there where the scene has them.";
 
 constexpr std::string_view measure_note =
     "Every column but the time is one with max:, min: or final: before it, those of drives and supports and "

@@ -110,6 +110,25 @@ TEST_CASE("keys are listed by table, for people and for programs") {
   CHECK(contains(run_program({"list", "columns"}).out, "kinetic_energy_J"));
 }
 
+// What follows the dot of a column of an entry, or the column of a structure of its own.
+TEST_CASE("every column that a scene of the library has is listed") {
+  const ScratchDirectory dir;
+  const std::string listed = run_program({"list", "columns"}).out;
+  for (const char* name : {"hoop6_motor", "cable_ring", "reentrant_sheet", "four_bar", "mesh_reflector"}) {
+    REQUIRE(run_program({"run", name, "-o", dir / name, "--set", "solver.end_time=0.01", "--quiet"}).code ==
+            0);
+    std::istringstream header(lines_of(file_text(dir / name + "/series.csv")).at(0));
+    for (std::string column; std::getline(header, column, ',');) {
+      INFO(name << ": " << column);
+      const std::size_t dot = column.rfind('.');
+      std::string word = dot == std::string::npos ? column : column.substr(dot);
+      for (const char* axis : {"_y_N", "_z_N"})  // listed behind that of x
+        if (word.ends_with(axis)) word = axis;
+      CHECK(contains(listed, word));
+    }
+  }
+}
+
 TEST_CASE("show prints a scene as it stands, and with changes in their places") {
   CHECK(run_program({"show", "four_bar"}).out == scene("four_bar"));
   std::string changed = scene("hoop6_motor");
