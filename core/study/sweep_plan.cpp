@@ -60,6 +60,8 @@ void fill_range(const std::string& text, const std::vector<std::string>& parts, 
   axis.log = parts.size() == 4;
   if (axis.log && (!(from > 0) || !(to > 0))) refuse(text, "a log range needs numbers > 0");
   if (count > 1 && from == to) refuse(text, "the range is empty; its ends are equal");
+  if (!std::isfinite(to - from) || (axis.log && !(std::isfinite(to / from) && std::isfinite(from / to))))
+    refuse(text, "the range is wider than numbers are");
   for (long i = 0; i < static_cast<long>(count); ++i) {
     const double u = count > 1 ? static_cast<double>(i) / (count - 1) : 0.0;
     double x = axis.log ? from * std::pow(to / from, u) : from + (to - from) * u;
@@ -76,6 +78,8 @@ void fill_range(const std::string& text, const std::vector<std::string>& parts, 
     axis.numbers.push_back(x);
     axis.values.push_back(exact_number(x));
   }
+  if (std::ranges::adjacent_find(axis.numbers) != axis.numbers.end())
+    refuse(text, "there are not so many numbers between its ends");
 }
 
 std::string replaced(std::string text, std::string_view what, std::string_view with) {
