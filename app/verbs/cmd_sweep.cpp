@@ -142,7 +142,7 @@ void warn_of_idle_axes(const SweepPlan& plan, const Arguments& arguments) {
 }
 
 constexpr const char* figure_wants =
-    "it takes one or two --vary, numbers in one and in the other numbers, too, or 12 values at most";
+    "it takes one or two --vary; words of up to 30 values, and beside what is no number up to 12";
 
 std::string journal_name(const Shard& shard) {
   if (shard.count == 1) return "sweep.csv";

@@ -264,10 +264,23 @@ TomlTree value_at(TomlTree root, const std::string& key) {
   }
 }
 
+std::size_t equals_of(std::string_view text) {
+  const auto is_quote = [&](std::size_t i) { return i < text.size() && (text[i] == '"' || text[i] == '\''); };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '=') return i;
+    const bool bracket = text[i] == '[';
+    if (const std::size_t from = i + bracket; is_quote(from) && (bracket || i == 0 || text[i - 1] == '.'))
+      i = text.find(text[from], from + 1);
+    if (bracket) i = text.find(']', i);
+    if (i == text.npos) return text.find('=');  // what stays open is told of where the key is read
+  }
+  return text.npos;
+}
+
 void apply_overrides(TomlTree& root, const std::vector<std::string>& overrides,
                      std::vector<SceneProblem>& problems) {
   for (const auto& text : overrides) {
-    const std::size_t equals = text.find('=');
+    const std::size_t equals = equals_of(text);
     const std::string key = text.substr(0, equals);
     try {
       if (equals == std::string::npos) throw Refusal{"must be key=value"};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/scene/toml_tree.hpp"
@@ -16,6 +17,10 @@ namespace unfurl {
 // arrays do not grow. What cannot be applied is added to `problems`.
 void apply_overrides(TomlTree& root, const std::vector<std::string>& overrides,
                      std::vector<SceneProblem>& problems);
+
+// Where the "=" of "key=value" is: names in brackets or quotes may have one of their own. npos: there is
+// none.
+std::size_t equals_of(std::string_view text);
 
 // Of a list whose entries stand in a CSV file, too, NAME_file = `file`: what is said where a key leads to
 // none of its own. Empty: there is no such file.

@@ -314,7 +314,7 @@ class Expansion {
 // A variable that an override names must be there: it would mean nothing.
 void refuse_unknown_variable(const TomlTree& root, const std::string& override_text,
                              std::vector<SceneProblem>& problems) {
-  const std::string key = override_text.substr(0, override_text.find('='));
+  const std::string key = override_text.substr(0, equals_of(override_text));
   const std::string name = key.substr(of_variables.size());
   const TomlTree* table = root.find("variables");
   std::vector<std::string_view> known;

@@ -266,7 +266,7 @@ std::optional<WrittenBack> edited(std::string text, const std::string& name,
                                   const std::vector<std::string>& overrides) {
   OwnOfText lost;
   for (const std::string& entry : overrides) {  // one by one: each sees what the ones before it made
-    const std::size_t equals = entry.find('=');
+    const std::size_t equals = equals_of(entry);
     if (equals == entry.npos) return std::nullopt;
     const TomlTree root = parse_toml(text, name);
     const auto change = replacement(text, root, std::string_view(entry).substr(0, equals),

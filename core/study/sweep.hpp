@@ -25,6 +25,7 @@ struct SweepAxis {
   std::string unit;    // has this unit; check_plan finds both
 
   std::string title() const;                   // "fold angle (°)", for figures
+  std::string word(std::size_t value) const;   // "30°", "dvm"
   std::string title(std::size_t value) const;  // "fold angle = 30°", "solver method = dvm"
 };
 

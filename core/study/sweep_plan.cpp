@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "core/export/checksum.hpp"
+#include "core/scene/overrides.hpp"
 #include "core/scene/text_file.hpp"
 #include "core/scene/toml_tree.hpp"
 #include "core/scene/variables.hpp"
@@ -117,6 +118,10 @@ std::string SweepAxis::title() const {
 }
 
 std::string SweepAxis::title(std::size_t value) const {
+  return words(key) + " = " + word(value);
+}
+
+std::string SweepAxis::word(std::size_t value) const {
   std::string text = values[value];
   // Thirds have sixteen digits: as few as keep the values apart.
   const auto with = [&](int digits, double x) {
@@ -137,11 +142,11 @@ std::string SweepAxis::title(std::size_t value) const {
     text = with(digits, numbers[value]);
   }
   const std::string space = unit.empty() || unit == "deg" ? "" : " ";
-  return words(key) + " = " + text + space + typeset(unit);
+  return text + space + typeset(unit);
 }
 
 SweepAxis parse_axis(const std::string& text) {
-  const std::size_t equals = text.find('=');
+  const std::size_t equals = equals_of(text);
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     refuse(text, "must be KEY=FROM:TO:COUNT, KEY=FROM:TO:COUNT:log or KEY=A,B,C");
   SweepAxis axis;

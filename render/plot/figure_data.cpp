@@ -66,8 +66,12 @@ class PanelTable {
   void curve(const Curve& c) {
     const std::string& axis = (c.right_axis ? panel_.y2 : panel_.y).label;
     const std::string& name = c.label.empty() ? axis : c.label;
+    const auto& words = panel_.y.names;
+    const auto y = [&](double v) {
+      return words.empty() ? number(v) : cell(words.at(static_cast<std::size_t>(std::lround(v))));
+    };
     for (std::size_t i = 0; i < std::min(c.x.size(), c.y.size()); ++i)
-      row(c.right_axis ? "right_curve" : "curve", name, {number(c.x[i]), number(c.y[i]), "", ""});
+      row(c.right_axis ? "right_curve" : "curve", name, {number(c.x[i]), y(c.y[i]), "", ""});
   }
 
   const Panel& panel_;

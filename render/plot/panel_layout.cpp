@@ -15,6 +15,12 @@ constexpr double tick_text = tick_length + tick_gap;  // from the frame to tick 
 constexpr double half_digit = cap_height * small_size / 2;
 
 Ticks ticks_of(const Axis& axis, const Limits& l, int most) {
+  if (!axis.names.empty()) {
+    Ticks ticks;
+    ticks.labels = axis.names;
+    for (std::size_t k = 0; k < axis.names.size(); ++k) ticks.major.push_back(static_cast<double>(k));
+    return ticks;
+  }
   if (axis.log) return log_ticks(l.lo, l.hi, most);
   if (axis.whole) return whole_ticks(l.lo, l.hi, most);
   return axis.degrees ? degree_ticks(l.lo, l.hi, most) : linear_ticks(l.lo, l.hi, most);

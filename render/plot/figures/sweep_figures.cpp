@@ -19,6 +19,8 @@ namespace unfurl {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t most_curves = 12,
+                      most_words = 30;  // that can be told apart; that stand below each other
 
 // Values of a measure by the numbers of the row's axes; finite ones only.
 double value_of(const SweepPlan& plan, const std::vector<std::string>& row, std::size_t measure) {
@@ -96,6 +98,10 @@ void set_scale(Panel& p) {
   p.y.log = p.y.zeros_at_floor = largest > 1e3 * least;
 }
 
+bool has_zeros(const Panel& p) {
+  return std::ranges::any_of(p.curves, [](const Curve& c) { return std::ranges::count(c.x, 0.0) > 0; });
+}
+
 // "Deployment time", of "deployment time (s)".
 std::string heading(const std::string& label) {
   std::string text = label.substr(0, label.rfind(" ("));
@@ -139,6 +145,31 @@ Panel curve_panel(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
     p.curves.push_back(std::move(c));
   }
   set_scale(p);
+  return p;
+}
+
+// A row for every word of the axis `down`, the first at the top; a marker for every value of the other axis
+// where there is one.
+Panel word_panel(const SweepPlan& plan, const Sweep& sweep, std::size_t measure, std::size_t down) {
+  const SweepAxis& axis = plan.axes[down];
+  const std::size_t count = axis.values.size();
+  SweepPlan turned = plan;  // the same with numbers: the place of each word from below
+  turned.axes[down].numbers.clear();
+  for (std::size_t i = 0; i < count; ++i)
+    turned.axes[down].numbers.push_back(static_cast<double>(count - 1 - i));
+  turned.axes[down].log = false;
+  Panel p = curve_panel(turned, sweep, measure, down);
+  const auto families = static_cast<double>(p.curves.size());
+  for (std::size_t f = 0; f < p.curves.size(); ++f) {
+    Curve& c = p.curves[f];
+    std::swap(c.x, c.y);
+    c.width = 0;
+    const double aside = 0.5 * ((families - 1) / 2 - static_cast<double>(f)) / families;
+    for (double& y : c.y) y += aside;  // what is the same lies below each other, not on each other
+  }
+  p.x = {.label = plan.measures[measure].label, .log = p.y.log && !has_zeros(p)};
+  p.y = {.label = axis.title(), .min = -0.5, .max = static_cast<double>(count) - 0.5};
+  for (std::size_t i = count; i-- > 0;) p.y.names.push_back(axis.word(i));
   return p;
 }
 
@@ -327,13 +358,19 @@ std::vector<Figure> sweep_figures(const SweepPlan& plan, const Sweep& sweep, con
       axes == 2 && (!numeric(0) || (numeric(1) && plan.axes[1].values.size() > plan.axes[0].values.size()))
           ? 1
           : 0;
-  if (!map && (!numeric(across) || (axes == 2 && plan.axes[1 - across].values.size() > 12))) return figures;
+  const auto few = [&](std::size_t a) { return axes == 1 || plan.axes[1 - a].values.size() <= most_curves; };
+  const bool words = !map && !(numeric(across) && few(across));
+  const std::size_t down = axes == 2 && plan.axes[1].values.size() > plan.axes[0].values.size() ? 1 : 0;
+  if (words && (plan.axes[down].values.size() > most_words || !few(down))) return figures;
   for (std::size_t m = 0; m < plan.measures.size(); ++m) {
     if (is_flag(plan.measures[m])) continue;
     Figure f;
     if (map) {
       f = map_figure(plan, sweep, m);
       f.caption = map_caption(plan, sweep, m);
+    } else if (words) {
+      f.panels.push_back(word_panel(plan, sweep, m, down));
+      f.height_mm = 45 + 7 * static_cast<double>(plan.axes[down].values.size());
     } else {
       f.panels.push_back(curve_panel(plan, sweep, m, across));
     }

@@ -174,6 +174,19 @@ TEST_CASE("overrides that cannot be applied say why") {
   CHECK(with({"=1"}).problems.find("the key has an empty part") != std::string::npos);
 }
 
+TEST_CASE("a name with an equals sign is set as it stands") {
+  TomlTree root = parse_toml("[[forces]]\nname = 'a=b'\nx = 1\n[t]\n'c=d' = 1\n", "x.toml");
+  std::vector<SceneProblem> problems;
+  apply_overrides(root, {"forces[a=b].x=2", "t.'c=d'=\"e=f\"", "forces[\"a=b\"].y=3"}, problems);
+  CHECK(problems.empty());
+  CHECK(root.find("forces")->items[0].find("x")->integer == 2);
+  CHECK(root.find("forces")->items[0].find("y")->integer == 3);
+  CHECK(root.find("t")->find("c=d")->text == "e=f");
+  CHECK(equals_of("forces[a]b=c") == 10);
+  CHECK(equals_of("structure.nodes[Bob's].mass=1") == 27);
+  CHECK(equals_of("solver.step") == std::string_view::npos);
+}
+
 TEST_CASE("one bad override does not hide another") {
   const Result r = with({"title.x=1", "solver.step=0.5", "a..b=1"});
   CHECK(std::count(r.problems.begin(), r.problems.end(), '\n') == 2);

@@ -106,12 +106,15 @@ TEST_CASE("figures of a study are in order in every style", "[figures]") {
   judge(convergence_figure(all, "Spatial double pendulum of two rods"));
 }
 
-TEST_CASE("figures of a sweep are in order in every style: curves, families of curves, maps", "[figures]") {
+TEST_CASE("figures of a sweep are in order in every style: curves, families of curves, maps, words",
+          "[figures]") {
   const SceneSource sector{find_scene("hoop6_sector"), {"solver.step=0.05"}};
   for (const std::vector<std::string>& axes :
        {std::vector<std::string>{"structure.fold_angle=40:80:5"},
         {"structure.fold_angle=40:80:4", "structure.hinge_force=100:400:3"},
-        {"structure.fold_angle=40:80:5", "structure.hinge_force=100:400:5"}}) {
+        {"structure.fold_angle=40:80:5", "structure.hinge_force=100:400:5"},
+        {"solver.method=dvm,rk4,rk4_projected,generalized_alpha"},
+        {"solver.method=dvm,rk4", "solver.at_deployed=stop,latch,pass"}}) {
     SweepPlan plan{sector, {}, {}, {}};
     for (const std::string& axis : axes) plan.axes.push_back(parse_axis(axis));
     const Sweep sweep = sweep_of(plan);
@@ -137,6 +140,33 @@ TEST_CASE("a sweep over decades is drawn on a log axis, and its axes tell their 
   CHECK_FALSE(figures[1].panels[0].y.log);
   CHECK(figures[1].caption == "4 runs.");
   for (const Figure& figure : figures) CHECK(figure.panels[0].x.label == "solver step (s)");
+}
+
+TEST_CASE("words of a sweep stand below each other, in their order, beside what was measured", "[figures]") {
+  SweepPlan plan{
+      {find_scene("hoop6_sector"), {}},
+      {parse_axis("solver.at_deployed=stop,pass"), parse_axis("solver.method=rk4,dvm,rk4_projected")},
+      {},
+      {}};
+  plan.measures = {find_measure("deploy_time")};
+  check_plan(plan);
+  Sweep sweep{{plan.columns(), {}}};
+  for (const std::string& end : plan.axes[0].values)
+    for (const std::string& method : plan.axes[1].values)
+      sweep.table.rows.push_back(
+          {end, method, "deployed",
+           (end == plan.axes[0].values[0] ? "4." : "5.") + std::to_string(method.size())});
+  const Figure figure = sweep_figures(plan, sweep, "Ring").front();
+  const Panel& panel = figure.panels[0];
+  CHECK(panel.y.names == std::vector<std::string>{"rk4_projected", "dvm", "rk4"});  // from below
+  CHECK(panel.y.label == "solver method");
+  CHECK(panel.x.label == "deployment time (s)");
+  REQUIRE(panel.curves.size() == 2);
+  CHECK(panel.curves[0].label == "solver at deployed = stop");
+  const std::string csv = figure_csv(figure);
+  for (const char* row : {"1,curve,solver at deployed = stop,4.3,rk4,,\n",
+                          "1,curve,solver at deployed = pass,5.13,rk4_projected,,\n"})
+    CHECK_THAT(csv, Catch::Contains(row));
 }
 
 TEST_CASE("a list in any order is drawn as a curve from the left to the right", "[figures]") {
