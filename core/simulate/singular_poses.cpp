@@ -34,16 +34,18 @@ SparseRows identity(Index n) {
   return one;
 }
 
-void scale_rows(SparseRows& G) {
+VectorXd scale_rows(SparseRows& G) {
+  VectorXd lengths = VectorXd::Zero(G.rows());
   double* const value = G.valuePtr();
   const int* const start = G.outerIndexPtr();
   for (Index r = 0; r < G.rows(); ++r) {
     double square = 0;
     for (int p = start[r]; p < start[r + 1]; ++p) square += value[p] * value[p];
     if (square == 0) continue;
-    const double norm = std::sqrt(square);
-    for (int p = start[r]; p < start[r + 1]; ++p) value[p] /= norm;
+    lengths[r] = std::sqrt(square);
+    for (int p = start[r]; p < start[r + 1]; ++p) value[p] /= lengths[r];
   }
+  return lengths;
 }
 
 }  // namespace
@@ -72,7 +74,7 @@ void SmallestSingularValue::jacobian(const ConstVec& z) {
   z_ = z;
   system_.expand(z, q_);
   system_.jacobian(q_, G_, scratch_);
-  scale_rows(G_);
+  lengths_ = scale_rows(G_);
 }
 
 bool SmallestSingularValue::place(const ConstVec& z) {
@@ -114,6 +116,17 @@ double SmallestSingularValue::estimate(const ConstVec& z) {
   return settle(0.01);
 }
 
+SmallestSingularValue::Pair SmallestSingularValue::pair() const {
+  const VectorXd here = block_.col(zeros_);
+  if (by_rows_) return {here, (G_.transpose() * here).normalized(), lengths_};
+  return {(G_ * here).normalized(), here, lengths_};
+}
+
+double SmallestSingularValue::between(const Pair& pair, const ConstVec& z) {
+  jacobian(z);
+  return pair.u.dot(G_ * pair.v);
+}
+
 // With b in the place of f or of g, [I G^T; G -e] [x; y] = [f; g] has the solutions
 //     f = 0:  y = -(G G^T + e)^-1 g,      g = 0:  x = e (G^T G + e)^-1 f.
 // Columns of zeros grow most, and are orthogonalised first.
@@ -135,22 +148,26 @@ void SmallestSingularValue::improve() {
   sigma_ = ritz.values.cwiseMax(0.0).cwiseSqrt();
 }
 
-Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std::size_t last) {
-  const System& system = trajectory.model(first).system;
-  if (system.constraints() == 0) return 0;  // all rods give
+Index rank_at(const System& system, const ConstVec& z) {
   SparseRows G = system.jacobian_pattern();
   std::vector<double> scratch;
   VectorXd q(system.coordinates());
+  system.expand(z, q);
+  system.jacobian(q, G, scratch);
+  scale_rows(G);
+  return rank_within(MatrixXd(G), no_rank);
+}
+
+Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std::size_t last) {
+  const System& system = trajectory.model(first).system;
+  if (system.constraints() == 0) return 0;  // all rods give
   Index rank = 0;
   constexpr int samples = 5;
   for (int k = 0; k < samples; ++k) {
     const std::size_t i = first + (last - first) * static_cast<std::size_t>(k) / (samples - 1);
-    system.expand(trajectory.state(i).z, q);
-    system.jacobian(q, G, scratch);
-    scale_rows(G);
-    rank = std::max(rank, rank_within(MatrixXd(G), no_rank));
+    rank = std::max(rank, rank_at(system, trajectory.state(i).z));
   }
-  return G.rows() - rank;
+  return system.constraints() - rank;
 }
 
 bool singular_at_end(const Trajectory& trajectory, double flat) {

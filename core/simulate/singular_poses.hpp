@@ -25,6 +25,13 @@ class SmallestSingularValue {
   // How far the Jacobian has moved since this was asked last (infinite the first time), in the norm of all
   // its entries: by Weyl's inequality no singular value has changed by more.
   double moved(const ConstVec& z);
+  // What at() or estimate() has found: unit vectors u of the rows and v of the coordinates with G v = sigma
+  // u, and how long the rows were.
+  struct Pair {
+    VectorXd u, v, lengths;
+  };
+  Pair pair() const;
+  double between(const Pair& pair, const ConstVec& z);  // u^T G(z) v
 
  private:
   void jacobian(const ConstVec& z);
@@ -40,10 +47,14 @@ class SmallestSingularValue {
   std::vector<double> scratch_;
   SaddleSolver saddle_;
   VectorXd z_, q_, sigma_;      // z_: the pose of G_
+  VectorXd lengths_;            // of its rows
   VectorXd seen_;               // entries of G_ at the pose that moved() saw last
   Interleaved rows_, columns_;  // the two parts of some of the saddle-point system's unknowns
   MatrixXd block_;              // columns: singular vectors, by rising sigma
 };
+
+// Of the kept Jacobian in a pose, rows of length 1.
+Index rank_at(const System& system, const ConstVec& z);
 
 // Rows of the kept Jacobian less its rank, the largest rank of a few states of [first, last]: a pose that is
 // singular for a moment does not count.

@@ -98,6 +98,29 @@ VectorXd multipliers_there(const System& smooth, const AcrossPose& across, const
 
 }  // namespace
 
+// A step, or as much of it as stays on its side of dead centres that drives lead to and do not reach.
+Probe Stepper::Loop::step_on_side(double& h) {
+  constexpr double least = 1e-6;  // of a step
+  Probe to{.at = h, .state = now()};
+  to.report = take_step(*integrator_, to.state, h);
+  const Probe whole = to;
+  const double until = part_end_;
+  while (to.report.ok() && !to.report.weak_end) {
+    const auto verdict = dead_centres_->judge(now(), to.state);
+    if (!verdict) return to;
+    part_end_ = verdict->latest, h = part_end_ - now().t;
+    if (!(h > least * run_.options.step)) break;
+    to = {.at = h, .state = now()};
+    integrator_->restart();
+    to.report = take_step(*integrator_, to.state, h);
+    if (verdict->turns && to.report.ok() && dead_centres_->in_one(to.state)) break;
+  }
+  if (h == whole.at) return to;
+  integrator_->restart();
+  part_end_ = until, h = whole.at;
+  return whole;
+}
+
 // The last state that lies clear of the pose at the end of this step, as far back as the motion is smooth and
 // comes nearer to it.
 std::size_t Stepper::Loop::clear_of(double t) const {

@@ -13,6 +13,7 @@
 #include "core/integrators/dvm.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/simulate/across_pose.hpp"
+#include "core/simulate/dead_centres.hpp"
 #include "core/simulate/deployed_event.hpp"
 #include "core/simulate/drift.hpp"
 #include "core/simulate/driven_deployed.hpp"
@@ -162,8 +163,7 @@ class Stepper::Loop {
   bool part(double h) {
     if (watched())
       if (const std::vector<std::size_t> over = passed(); !over.empty()) return act(over);
-    Probe to{.at = h, .state = now()};
-    to.report = take_step(*integrator_, to.state, h);
+    Probe to = step_on_side(h);
     if (gives_way(to)) return true;
     if (to.report.weak_end) settle_in_pose(to, h);
     std::optional<State> event;
@@ -369,6 +369,7 @@ class Stepper::Loop {
 
   void model_changed() {
     integrator_ = fresh_integrator();
+    dead_centres_.emplace(system());
     probing_.reset();
     sides_.forget_model();
     have_begin_ = false;
@@ -421,6 +422,7 @@ class Stepper::Loop {
   void hold_nodes();
   void enter_held();
   bool gives_way(Probe& to);
+  Probe step_on_side(double& h);
   bool step_over(Probe& to, double& h);
   std::size_t clear_of(double t) const;
   bool ends_in_pose(const Probe& to) const;
@@ -448,6 +450,7 @@ class Stepper::Loop {
   bool edge_ = false;                 // time has an edge at target_
   bool new_motion_ = false;           // rates or forces have jumped within the present step
   std::unique_ptr<Integrator> integrator_, probing_;
+  std::optional<DeadCentres> dead_centres_;  // of the present model
   std::optional<StepControl> control_;
   const System* controlled_ = nullptr;
   Probe begin_;  // the present state
