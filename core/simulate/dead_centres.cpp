@@ -37,41 +37,31 @@ bool DeadCentres::prepare(const State& from, const State& to) {
   return sigma_.has_value();
 }
 
-std::optional<DeadCentres::Verdict> DeadCentres::judge(const State& from, const State& to) {
-  const double before = std::exchange(left_, 0.0);
-  if (system_.drives().empty() || !slows(from.t, to.t) || !prepare(from, to)) return std::nullopt;
+DeadCentres::Verdict DeadCentres::judge(const State& from, const State& to) {
+  const double before = from.z == known_at_ ? left_ : 0.0;
+  if (system_.drives().empty() || !slows(from.t, to.t) || !prepare(from, to)) return {};
   sigma_->moved(from.z);
   const double way = sigma_->moved(to.z);
-  if (before > way) return left_ = before - way, std::nullopt;
+  known_at_ = to.z;
+  if (before > way) return left_ = before - way, Verdict{};
   const double behind = sigma_->at(to.z);
-  if (!(behind <= way)) return left_ = behind, std::nullopt;
   left_ = behind;
-  const double ahead = sigma_->at(from.z);
-  std::optional<Verdict> verdict;
-  if (ahead < behind) {
-    verdict = parabola(from, to, ahead);
-  } else {
-    sigma_->at(to.z);
-    verdict = parabola(to, from, behind);
-  }
-  if (!verdict) return verdict;
-  left_ = 0;
-  if (!verdict->turns) verdict->latest = 0.5 * (from.t + to.t);
-  return verdict;
+  if (!(behind <= way)) return {};
+  if (const double ahead = sigma_->at(from.z); ahead < behind) return parabola(from, to, ahead);
+  return parabola(to, from, sigma_->at(to.z));
 }
 
-std::optional<DeadCentres::Verdict> DeadCentres::parabola(const State& near, const State& far, double sigma) {
+DeadCentres::Verdict DeadCentres::parabola(const State& near, const State& far, double sigma) {
   constexpr double own = 0.5;  // of the squared distance: what the next power of it may change
   constexpr double alike = 4;  // of that at the step's other end
   constexpr int samples = 32, cuts = 40;
-  if (!(sigma < near_one)) return std::nullopt;
+  if (!(sigma > no_distance && sigma < near_one)) return {};
   const SmallestSingularValue::Pair pair = sigma_->pair();
-  const double other = sigma_->between(pair, far.z), way = pair.v.dot(far.z - near.z);
-  if (!(other < 0)) return std::nullopt;
-  const double c = (other - sigma) / way, x = sigma / c, square = x * x;
   double led = 0;
   for (const Drive& drive : system_.drives()) led = std::max(led, std::abs(pair.u[drive.row]));
-  if (sigma < no_distance || !(led > 10 * sigma)) return std::nullopt;
+  if (!(led > 10 * sigma)) return {};
+  const double other = sigma_->between(pair, far.z), c = (other - sigma) / pair.v.dot(far.z - near.z);
+  const double square = std::pow(sigma / c, 2), there = std::pow(other / c, 2);
   const auto at = [&](double t) {
     double moved = 0;
     for (const Drive& drive : system_.drives())
@@ -79,18 +69,17 @@ std::optional<DeadCentres::Verdict> DeadCentres::parabola(const State& near, con
                (drive.target(t) - drive.target(near.t));
     return square + 2 * moved / c;
   };
-  const double there = std::pow(other / c, 2), told = at(far.t);
-  if (!(told < alike * there && there < alike * told)) return std::nullopt;
-  const double part = (far.t - near.t) / samples;
+  if (const double told = at(far.t); !(told < alike * there && there < alike * told)) return {};
+  const double part = std::abs(far.t - near.t) / samples, first = std::min(near.t, far.t);
   int least = 0;
   for (int k = 1; k <= samples; ++k)
-    if (at(near.t + k * part) < at(near.t + least * part)) least = k;
-  double t = near.t + least * part, bottom = at(t);
-  if (0 < least && least < samples)
-    t = golden_section(at, t - std::abs(part), t + std::abs(part), cuts), bottom = at(t);
-  if (bottom > own * square) return Verdict{0, false};
-  if (bottom < -square) return std::nullopt;
-  return Verdict{t, true};
+    if (at(first + k * part) < at(first + least * part)) least = k;
+  double t = first + least * part;
+  if (0 < least && least < samples) t = golden_section(at, t - part, t + part, cuts);
+  const double bottom = at(t);
+  if (bottom > own * square) return {other < 0 ? Side::lost : Side::kept};
+  if (other > 0 || bottom < -square) return {};
+  return {Side::turns, t};
 }
 
 bool DeadCentres::in_one(const State& state) {

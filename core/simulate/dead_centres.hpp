@@ -19,26 +19,28 @@ class DeadCentres {
  public:
   explicit DeadCentres(const System& system) : system_(system) {}
 
-  // Where a step that led from one state to the other has to end at the latest, to stay on its side; nothing:
-  // it did. Where drives turn round within the step, at so little a distance from the dead centre that the
-  // step does not tell it from none, there.
+  enum class Side { unknown, kept, lost, turns };
+  // Whether a step led from one state to the other on one side of a dead centre, which drives do not reach;
+  // `turns`: they turn round within the step at `turn`, at so little a distance from it that the step does
+  // not tell it from none.
   struct Verdict {
-    double latest;  // [s]
-    bool turns;
+    Side side = Side::unknown;
+    double turn = 0;  // [s]
   };
-  std::optional<Verdict> judge(const State& from, const State& to);
-  // Whether a state is one of a dead centre, as far as doubles tell.
+  Verdict judge(const State& from, const State& to);
+  // Whether a state is that of a dead centre, as far as doubles tell. Behind judge().
   bool in_one(const State& state);
 
  private:
   bool slows(double from, double to) const;
   bool prepare(const State& from, const State& to);
-  std::optional<Verdict> parabola(const State& near, const State& far, double sigma);
+  Verdict parabola(const State& near, const State& far, double sigma);
 
   const System& system_;
   std::optional<SmallestSingularValue> sigma_;
   bool known_ = false;  // sigma_ is, or there is none
-  double left_ = 0;     // by so much the Jacobian may change from the last state on before it loses rank
+  VectorXd known_at_;   // coordinates, from which on
+  double left_ = 0;     // the Jacobian may change by so much before it loses rank
 };
 
 }  // namespace unfurl

@@ -98,27 +98,30 @@ VectorXd multipliers_there(const System& smooth, const AcrossPose& across, const
 
 }  // namespace
 
-// A step, or as much of it as stays on its side of dead centres that drives lead to and do not reach.
-Probe Stepper::Loop::step_on_side(double& h) {
+// A step that changes sides of a dead centre which its drives do not reach is not taken, but half of it.
+// True where it is known to stay beside one.
+bool Stepper::Loop::stays_beside(Probe& to) {
   constexpr double least = 1e-6;  // of a step
-  Probe to{.at = h, .state = now()};
-  to.report = take_step(*integrator_, to.state, h);
-  const Probe whole = to;
-  const double until = part_end_;
-  while (to.report.ok() && !to.report.weak_end) {
-    const auto verdict = dead_centres_->judge(now(), to.state);
-    if (!verdict) return to;
-    part_end_ = verdict->latest, h = part_end_ - now().t;
-    if (!(h > least * run_.options.step)) break;
-    to = {.at = h, .state = now()};
-    integrator_->restart();
-    to.report = take_step(*integrator_, to.state, h);
-    if (verdict->turns && to.report.ok() && dead_centres_->in_one(to.state)) break;
+  if (!to.report.ok()) return false;
+  const auto [side, turn] = dead_centres_->judge(now(), to.state);
+  const double h = turn - now().t;
+  if (side == DeadCentres::Side::kept) {
+    to.report.weak_end = false;
+    return true;
   }
-  if (h == whole.at) return to;
+  if (side == DeadCentres::Side::unknown) return false;
+  if (side == DeadCentres::Side::turns) {
+    const auto integrator = fresh_integrator();
+    const auto step = [&](State& state, double length) { return integrator->step(state, length); };
+    State there = now();
+    if (!step(there, h).ok() && !step_in_parts(*integrator, there, h, step).ok()) return false;
+    if (dead_centres_->in_one(there)) return false;
+  }
+  on_side_until_ = side == DeadCentres::Side::turns ? turn : 0.5 * (now().t + to.state.t);
+  if (!(on_side_until_ - now().t > least * run_.options.step)) return false;
   integrator_->restart();
-  part_end_ = until, h = whole.at;
-  return whole;
+  in_pose_.reset();
+  return changes_side_ = true;
 }
 
 // The last state that lies clear of the pose at the end of this step, as far back as the motion is smooth and
