@@ -55,12 +55,13 @@ DeadCentres::Verdict DeadCentres::parabola(const State& near, const State& far, 
   constexpr double own = 0.5;  // of the squared distance: what the next power of it may change
   constexpr double alike = 4;  // of that at the step's other end
   constexpr int samples = 32, cuts = 40;
-  if (!(sigma > no_distance && sigma < near_one)) return {};
+  if (!(sigma < near_one)) return {};
   const SmallestSingularValue::Pair pair = sigma_->pair();
   double led = 0;
   for (const Drive& drive : system_.drives()) led = std::max(led, std::abs(pair.u[drive.row]));
   if (!(led > 10 * sigma)) return {};
   const double other = sigma_->between(pair, far.z), c = (other - sigma) / pair.v.dot(far.z - near.z);
+  if (!(sigma > no_distance)) return {beside(near, pair, c) ? Side::lost : Side::unknown};
   const double square = std::pow(sigma / c, 2), there = std::pow(other / c, 2);
   const auto at = [&](double t) {
     double moved = 0;
@@ -82,8 +83,16 @@ DeadCentres::Verdict DeadCentres::parabola(const State& near, const State& far, 
   return {Side::turns, t};
 }
 
+// A state in a dead centre is one that was led to it: constraints that do not hold there do so beside it.
+bool DeadCentres::beside(const State& in_one, const SmallestSingularValue::Pair& pair, double c) const {
+  VectorXd q(system_.coordinates()), phi(system_.constraints());
+  system_.expand(in_one.z, q);
+  system_.at(in_one).constraint(in_one.t, q, phi);
+  return -2 * c * pair.u.dot(phi.cwiseQuotient(pair.lengths)) > std::pow(3 * no_distance, 2);
+}
+
 bool DeadCentres::in_one(const State& state) {
-  return !(sigma_->at(state.z) > 10 * no_distance);
+  return !(sigma_->at(state.z) > 3 * no_distance);
 }
 
 }  // namespace unfurl

@@ -34,6 +34,7 @@ class DeadCentres {
  private:
   bool slows(double from, double to) const;
   bool prepare(const State& from, const State& to);
+  bool beside(const State& in_one, const SmallestSingularValue::Pair& pair, double c) const;
   Verdict parabola(const State& near, const State& far, double sigma);
 
   const System& system_;
