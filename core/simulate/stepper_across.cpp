@@ -102,6 +102,7 @@ VectorXd multipliers_there(const System& smooth, const AcrossPose& across, const
 // True where it is known to stay beside one.
 bool Stepper::Loop::stays_beside(Probe& to) {
   constexpr double least = 1e-6;  // of a step
+  constexpr int most = 100;
   if (!to.report.ok()) return false;
   const auto [side, turn] = dead_centres_->judge(now(), to.state);
   const double h = turn - now().t;
@@ -118,10 +119,16 @@ bool Stepper::Loop::stays_beside(Probe& to) {
     if (dead_centres_->in_one(there)) return false;
   }
   on_side_until_ = side == DeadCentres::Side::turns ? turn : 0.5 * (now().t + to.state.t);
-  if (!(on_side_until_ - now().t > least * run_.options.step)) return false;
+  if (!(on_side_until_ - now().t > least * run_.options.step) || ++halved_ > most) {
+    warn_once(
+        ": a drive rests or turns round so near a dead centre that rods may have been thrown over it; a "
+        "smaller "
+        "solver.step tells");
+    return false;
+  }
   integrator_->restart();
-  in_pose_.reset();
-  return changes_side_ = true;
+  if (in_pose_ && in_pose_->t > now().t) in_pose_.reset();
+  return lost_side_ = true;
 }
 
 // The last state that lies clear of the pose at the end of this step, as far back as the motion is smooth and
@@ -210,7 +217,7 @@ VectorXd Stepper::Loop::find_resting(double t) {
 }
 void Stepper::Loop::rest_in_pose() {
   if (held_.nodes.empty() || held_.places.size() > 0) return;
-  in_pose_.reset();
+  if (in_pose_ && in_pose_->t > now().t) in_pose_.reset();
   hold_deployed();
   if (holds_) enter_held();
 }

@@ -144,10 +144,10 @@ class Stepper::Loop {
     edge_ = target.edge;
     pushed_.reset();
     double h = target.h;
-    in_step_ = 0;
+    in_step_ = halved_ = 0;
     while (now().t < target_) {
       double short_of = integrator_->longest_step(now(), h, std::max(h, run_.options.step));
-      if (std::exchange(changes_side_, false)) short_of = std::min(short_of, on_side_until_ - now().t);
+      if (std::exchange(lost_side_, false)) short_of = std::min(short_of, on_side_until_ - now().t);
       part_end_ = short_of < h ? now().t + short_of : target_;
       if (!part(short_of)) return ended_ = true, false;
       if (std::exchange(new_motion_, false) && run_.options.adaptive) plan_anew();
@@ -167,15 +167,16 @@ class Stepper::Loop {
     Probe to{.at = h, .state = now()};
     to.report = take_step(*integrator_, to.state, h);
     const bool beside = stays_beside(to);
-    if (changes_side_) return true;
+    if (lost_side_) return true;
+    const bool solved = to.report.ok() && !to.report.weak_end;
     if (gives_way(to)) return true;
     if (to.report.weak_end) settle_in_pose(to, h);
     std::optional<State> event;
     if (!find_deployed(to, h, event)) return false;
-    if (!event && (!to.report.ok() || (!beside && time_ends_in_pose(to))) && !step_over(to, h))
-      end_in_pose(to, h);
-    if (!event && !beside) stays_beside(to);
-    if (changes_side_) return true;
+    const bool poses = !event && (!to.report.ok() || (!beside && time_ends_in_pose(to)));
+    if (poses && !step_over(to, h)) end_in_pose(to, h);
+    if (!event && (poses || !solved)) stays_beside(to);
+    if (lost_side_) return true;
     if (watched() && (event || to.report.ok())) {
       Probe flat;
       const bool short_of = event && (led_way_ || !to.report.ok() || event->t > now().t + to.at);
@@ -458,7 +459,8 @@ class Stepper::Loop {
   bool new_motion_ = false;           // rates or forces have jumped within the present step
   std::unique_ptr<Integrator> integrator_, probing_;
   std::optional<DeadCentres> dead_centres_;  // of the present model
-  bool changes_side_ = false;                // of one, by the last step, which is to end here at the latest:
+  int halved_ = 0;                           // in the present step, to stay on their sides
+  bool lost_side_ = false;                   // of one, by the last step, which is to end here at the latest:
   double on_side_until_ = 0;
   std::optional<StepControl> control_;
   const System* controlled_ = nullptr;
