@@ -32,7 +32,8 @@ bool DeadCentres::prepare(const State& from, const State& to) {
   if (system_.solved_coordinates() == 0 ||
       std::max(system_.constraints(), system_.solved_coordinates()) > max_singular_size)
     return false;
-  sigma_.emplace(system_, system_.constraints() - std::max(rank_at(system_, from.z), rank_at(system_, to.z)));
+  const Index redundant = system_.constraints() - std::max(rank_at(system_, from.z), rank_at(system_, to.z));
+  sigma_.emplace(system_, redundant, std::min<Index>(std::ssize(system_.drives()), most_columns));
   if (sigma_->all_zeros()) sigma_.reset();
   return sigma_.has_value();
 }
@@ -47,20 +48,28 @@ DeadCentres::Verdict DeadCentres::judge(const State& from, const State& to) {
   const double behind = sigma_->at(to.z);
   left_ = behind;
   if (!(behind <= way)) return {};
-  if (const double ahead = sigma_->at(from.z); ahead < behind) return parabola(from, to, ahead);
-  return parabola(to, from, sigma_->at(to.z));
+  Verdict verdict;
+  for (const auto& [near, far] : {std::pair{&to, &from}, {&from, &to}}) {
+    sigma_->at(near->z);
+    for (const SmallestSingularValue::Pair& pair : sigma_->pairs()) {
+      if (!(pair.sigma <= way)) break;
+      if (const Verdict one = parabola(*near, *far, pair); one.side > verdict.side) verdict = one;
+    }
+  }
+  return verdict;
 }
 
-DeadCentres::Verdict DeadCentres::parabola(const State& near, const State& far, double sigma) {
+DeadCentres::Verdict DeadCentres::parabola(const State& near, const State& far,
+                                           const SmallestSingularValue::Pair& pair) {
   constexpr double own = 0.5;  // of the squared distance: what the next power of it may change
   constexpr double alike = 4;  // of that at the step's other end
   constexpr int samples = 32, cuts = 40;
-  if (!(sigma < near_one)) return {};
-  const SmallestSingularValue::Pair pair = sigma_->pair();
+  const double sigma = pair.sigma, other = sigma_->between(pair, far.z),
+               c = (other - sigma) / pair.v.dot(far.z - near.z);
+  if (!(sigma < near_one && std::abs(other) >= sigma)) return {};  // seen from there, else
   double led = 0;
   for (const Drive& drive : system_.drives()) led = std::max(led, std::abs(pair.u[drive.row]));
   if (!(led > 10 * sigma)) return {};
-  const double other = sigma_->between(pair, far.z), c = (other - sigma) / pair.v.dot(far.z - near.z);
   if (!(sigma > no_distance)) return {beside(near, pair, c) ? Side::lost : Side::unknown};
   const double square = std::pow(sigma / c, 2), there = std::pow(other / c, 2);
   const auto at = [&](double t) {

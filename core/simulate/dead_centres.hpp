@@ -19,7 +19,7 @@ class DeadCentres {
  public:
   explicit DeadCentres(const System& system) : system_(system) {}
 
-  enum class Side { unknown, kept, lost, turns };
+  enum class Side { unknown, kept, turns, lost };
   // Whether a step led from one state to the other on one side of a dead centre, which drives do not reach;
   // `turns`: they turn round within the step at `turn`, at so little a distance from it that the step does
   // not tell it from none.
@@ -35,7 +35,7 @@ class DeadCentres {
   bool slows(double from, double to) const;
   bool prepare(const State& from, const State& to);
   bool beside(const State& in_one, const SmallestSingularValue::Pair& pair, double c) const;
-  Verdict parabola(const State& near, const State& far, double sigma);
+  Verdict parabola(const State& near, const State& far, const SmallestSingularValue::Pair& pair);
 
   const System& system_;
   std::optional<SmallestSingularValue> sigma_;

@@ -50,16 +50,17 @@ VectorXd scale_rows(SparseRows& G) {
 
 }  // namespace
 
-SmallestSingularValue::SmallestSingularValue(const System& system, Index redundant)
+SmallestSingularValue::SmallestSingularValue(const System& system, Index redundant, Index count)
     : system_(system),
       by_rows_(system.constraints() <= system.solved_coordinates()),
       zeros_(by_rows_ ? redundant : redundant + system.solved_coordinates() - system.constraints()),
+      count_(count),
       G_(system.jacobian_pattern()),
       saddle_(identity(system.solved_coordinates()), G_, most_columns, shift,
               SaddleSolver::Order::sparse_first),
       q_(system.coordinates()) {
   const Index size = std::min(system.constraints(), system.solved_coordinates());
-  block_.resize(size, std::min(size, zeros_ + 2));
+  block_.resize(size, std::min(size, zeros_ + count_ + 1));
   for (Index c = 0; c < block_.cols(); ++c) stir(c);
 }
 
@@ -92,11 +93,12 @@ double SmallestSingularValue::moved(const ConstVec& z) {
 
 double SmallestSingularValue::settle(double tolerance) {
   stir(block_.cols() - 1);  // the last pose's vectors may all be orthogonal to this one's
-  double before = -1;
+  const Index count = std::min(count_, block_.cols() - zeros_);
+  VectorXd before = VectorXd::Constant(count, -1);
   for (int i = 0; i < most_iterations; ++i) {
     improve();
-    const double now = sigma_[zeros_];
-    if (!(std::abs(now - before) > tolerance * now + lost)) break;
+    const auto now = sigma_.segment(zeros_, count);
+    if (!(((now - before).cwiseAbs() - tolerance * now).maxCoeff() > lost)) break;
     before = now;
   }
   return sigma_[zeros_];
@@ -116,10 +118,14 @@ double SmallestSingularValue::estimate(const ConstVec& z) {
   return settle(0.01);
 }
 
-SmallestSingularValue::Pair SmallestSingularValue::pair() const {
-  const VectorXd here = block_.col(zeros_);
-  if (by_rows_) return {here, (G_.transpose() * here).normalized(), lengths_};
-  return {(G_ * here).normalized(), here, lengths_};
+std::vector<SmallestSingularValue::Pair> SmallestSingularValue::pairs() const {
+  std::vector<Pair> pairs;
+  for (Index k = zeros_; k < std::min(zeros_ + count_, block_.cols()); ++k) {
+    const VectorXd here = block_.col(k),
+                   there = (by_rows_ ? VectorXd(G_.transpose() * here) : VectorXd(G_ * here)).normalized();
+    pairs.push_back({sigma_[k], by_rows_ ? here : there, by_rows_ ? there : here, lengths_});
+  }
+  return pairs;
 }
 
 double SmallestSingularValue::between(const Pair& pair, const ConstVec& z) {

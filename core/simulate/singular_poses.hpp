@@ -12,10 +12,11 @@ namespace unfurl {
 // rows) that is not zero everywhere, followed from pose to pose: block inverse iteration with G G^T + e I or
 // G^T G + e I, whichever has fewer zeros, warm-started, then the singular values of G on the block
 // (Rayleigh-Ritz), which converge like the square of the block's error. `redundant`: how many rows depend on
-// others in every pose; their zeros are passed over.
+// others in every pose; their zeros are passed over. `count`: so many
+// of the smallest are known.
 class SmallestSingularValue {
  public:
-  SmallestSingularValue(const System& system, Index redundant);
+  SmallestSingularValue(const System& system, Index redundant, Index count = 1);
   // There is none: rods between fixed nodes alone. Nothing else may be asked then.
   bool all_zeros() const { return zeros_ >= block_.rows(); }
   double at(const ConstVec& z);  // NaN where the factorisation broke down
@@ -25,12 +26,13 @@ class SmallestSingularValue {
   // How far the Jacobian has moved since this was asked last (infinite the first time), in the norm of all
   // its entries: by Weyl's inequality no singular value has changed by more.
   double moved(const ConstVec& z);
-  // What at() or estimate() has found: unit vectors u of the rows and v of the coordinates with G v = sigma
-  // u, and how long the rows were.
+  // What at() has found, by rising sigma: unit vectors u of the rows and v of the coordinates with
+  // G v = sigma u, and how long the rows were.
   struct Pair {
+    double sigma;
     VectorXd u, v, lengths;
   };
-  Pair pair() const;
+  std::vector<Pair> pairs() const;
   double between(const Pair& pair, const ConstVec& z);  // u^T G(z) v
 
  private:
@@ -43,6 +45,7 @@ class SmallestSingularValue {
   const System& system_;
   bool by_rows_;  // the block lies in the space of the rows
   Index zeros_;   // of the matrix that is iterated with, in every pose
+  Index count_;
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
