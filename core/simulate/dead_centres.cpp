@@ -66,7 +66,7 @@ DeadCentres::Verdict DeadCentres::parabola(const State& near, const State& far,
   constexpr int samples = 32, cuts = 40;
   const double sigma = pair.sigma, other = sigma_->between(pair, far.z),
                c = (other - sigma) / pair.v.dot(far.z - near.z);
-  if (!(sigma < near_one && std::abs(other) >= sigma)) return {};  // seen from there, else
+  if (!(sigma < near_one && std::abs(other) > 0.9 * sigma)) return {};  // seen from there, else
   double led = 0;
   for (const Drive& drive : system_.drives()) led = std::max(led, std::abs(pair.u[drive.row]));
   if (!(led > 10 * sigma)) return {};
