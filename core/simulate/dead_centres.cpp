@@ -84,11 +84,12 @@ DeadCentres::Verdict DeadCentres::parabola(const State& near, const State& far,
   int least = 0;
   for (int k = 1; k <= samples; ++k)
     if (at(first + k * part) < at(first + least * part)) least = k;
+  const bool inside = 0 < least && least < samples;
   double t = first + least * part;
-  if (0 < least && least < samples) t = golden_section(at, t - part, t + part, cuts);
+  if (inside) t = golden_section(at, t - part, t + part, cuts);
   const double bottom = at(t);
   if (bottom > own * square) return {other < 0 ? Side::lost : Side::kept};
-  if (other > 0 || bottom < -square) return {};
+  if (other > 0 || !inside || bottom < -square) return {};
   return {Side::turns, t};
 }
 

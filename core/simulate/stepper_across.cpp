@@ -121,9 +121,8 @@ bool Stepper::Loop::stays_beside(Probe& to) {
   on_side_until_ = side == DeadCentres::Side::turns ? turn : 0.5 * (now().t + to.state.t);
   if (!(on_side_until_ - now().t > least * run_.options.step) || ++halved_ > most) {
     warn_once(
-        ": a drive rests or turns round so near a dead centre that rods may have been thrown over it; a "
-        "smaller "
-        "solver.step tells");
+        ": a drive rests or turns round so near a dead centre that rods may have been thrown over it; "
+        "a smaller solver.step tells");
     return false;
   }
   integrator_->restart();
