@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl run SCENE -o DIR: simulate; write data.
 #include <algorithm>
+#include <functional>
 #include <iostream>
 
 #include "app/command.hpp"
@@ -53,10 +54,11 @@ Diagnostics judged(Simulation& run, RunAhead& ahead) {
   std::vector<Event> poses;
   const TaskQueue::Scope scope(ahead.beside());
   ahead.beside().add([&] { poses = find_singular_poses(run.trajectory, waited_enough); });
-  return judge_run(run, {&ahead.forces(), ahead.flow(), [&] {
-                           ahead.beside().finish();
-                           record_singular_poses(run, poses);
-                         }});
+  const std::function<void()> name_poses = [&] {
+    ahead.beside().finish();
+    record_singular_poses(run, poses);
+  };
+  return judge_run(run, {&ahead.forces(), ahead.flow(), ahead.diagnosis(), &name_poses});
 }
 
 int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, OwnDirectory& output,
@@ -118,7 +120,7 @@ int run_in_parts(const Scene& scene, const std::shared_ptr<const Model>& model, 
   };
   // Not of what is displaced afterwards. Of a run that is handed over in parts it is for nothing.
   if (!model->structure.quasi_static && !parts.archived && !is_long(*model, scene.solver, parts))
-    parts.look = [&](const Trajectory& so_far) {
+    parts.look = [&](const Simulation& so_far) {
       ahead.look(so_far, std::clamp<std::size_t>(parts.states / 64 * 4, 4, 48));
     };
   Progress progress("simulating", arguments.quiet);

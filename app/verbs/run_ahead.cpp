@@ -17,6 +17,10 @@ int helpers(int threads) {
   return threads == 1 || std::thread::hardware_concurrency() == 1 ? 0 : 1;
 }
 
+std::shared_ptr<const Model> kept_elsewhere(const Model& model) {
+  return std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &model);
+}
+
 template <class Numbers>
 bool same_bits(const Numbers& a, const Numbers& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() &&
@@ -45,11 +49,16 @@ bool holds(const Trajectory& run, std::size_t first, const Trajectory& piece) {
 
 RunAhead::RunAhead(int threads) : on_(helpers(threads) > 0), queue_(helpers(threads)) {}
 
-void RunAhead::look(const Trajectory& run, std::size_t states) {
-  if (!on_ || run.size() < next_ + states + unsettled) return;
-  Piece& piece = pieces_.emplace_back(Piece{run.part(next_, next_ + states, {})});
+void RunAhead::look(const Simulation& run, std::size_t states) {
+  const Trajectory& so_far = run.trajectory;
+  if (!on_ || so_far.size() < next_ + states + unsettled || queue_.any_waiting()) return;
   const bool start = next_ == 0;
-  next_ += states;
+  if (start)
+    seen_.emplace(Simulation{.trajectory = Trajectory(kept_elsewhere(so_far.model()), so_far.options()),
+                             .options = run.options});
+  const std::size_t end = next_ + (so_far.size() - unsettled - next_) / states * states;
+  Piece& piece = pieces_.emplace_back(Piece{so_far.part(next_, end, {})});
+  next_ = end;
   queue_.add([this, &piece, start] { examine(piece, start); });
 }
 
@@ -58,24 +67,23 @@ void RunAhead::examine(Piece& piece, bool start) {
   const Trajectory& run = piece.run;
   if (start) mobility_ = analyse_mobility(run.model().system, run.node_positions(0));
   find_forces(run);
+  if (flow()) diagnosis_->judge();
   piece.rows = trajectory_rows(run);
   piece.done = true;
 }
 
 void RunAhead::find_forces(const Trajectory& piece) {
-  const auto shared = [](const Model& model) {
-    return std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &model);
-  };
-  if (!seen_) {
-    seen_.emplace(shared(piece.model()));
-    solver_.emplace(*seen_);
-    flow_.emplace(*seen_, true);
+  Trajectory& seen = seen_->trajectory;
+  if (!flow_) {
+    solver_.emplace(seen);
+    flow_.emplace(seen, true);
+    diagnosis_.emplace(*seen_, KnownAhead{&forces_, &flow_->so_far()});
   }
   for (std::size_t k = 0; k < piece.size(); ++k) {
-    if (&piece.model(k) != &seen_->last_model()) seen_->change_model(shared(piece.model(k)));
-    seen_->append(piece.state(k), piece.report(k));
+    if (&piece.model(k) != &seen.last_model()) seen.change_model(kept_elsewhere(piece.model(k)));
+    seen.append(piece.state(k), piece.report(k));
   }
-  for (std::size_t i = forces_.size(); i < seen_->size() && !interrupted_for(0.5); ++i) {
+  for (std::size_t i = forces_.size(); i < seen.size() && !interrupted_for(0.5); ++i) {
     if (i > 0) flow_->step_to(i, &*solver_);
     forces_.push_back(solver_->at(i));
   }
@@ -88,6 +96,7 @@ void RunAhead::stop() {
 }
 
 void RunAhead::drop() {
+  diagnosis_.reset();
   flow_.reset();
   solver_.reset();
   seen_.reset();

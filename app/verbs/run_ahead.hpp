@@ -5,6 +5,7 @@
 #include <deque>
 #include <optional>
 
+#include "core/diagnostics/diagnosis_ahead.hpp"
 #include "core/diagnostics/energy_flow.hpp"
 #include "core/diagnostics/state_forces.hpp"
 #include "core/export/csv.hpp"
@@ -14,16 +15,17 @@
 
 namespace unfurl {
 
-// While a run is solved, its first states are looked at already: forces, energy that flows in and out, rows
-// of trajectory.csv, mobility at the start. It is used where the run's states are still the same to the bit
-// when it has ended. On one core, or with one thread, nothing is done ahead, and what is given to beside() is
-// done at once.
+// While a run is solved, its first states are looked at already: forces, energy that flows in and out, their
+// diagnosis, rows of trajectory.csv, mobility at the start. It is used where the run's states are still the
+// same to the bit when it has ended. On one core, or with one thread, nothing is done ahead, and what is
+// given to beside() is done at once.
 class RunAhead {
  public:
   explicit RunAhead(int threads);  // at most; 0: as many as the machine has
 
-  // For Parts::look; `states`: how many are looked at together.
-  void look(const Trajectory& run, std::size_t states);
+  // For Parts::look; `states`: how many are looked at together, or more where the other core is behind: the
+  // run does not wait for it.
+  void look(const Simulation& run, std::size_t states);
   void stop();  // the run is handed over in parts: nothing of it is of use
 
   // Behind the run's last step: the rest of its forces is found, and all of what was found is dropped where
@@ -31,9 +33,8 @@ class RunAhead {
   void take(const Trajectory& run);
   void leave_out(std::size_t size);  // states from here on
   const std::vector<SolvedPoint>& forces() const { return forces_; }
-  const EnergyFlow* flow() const {  // of a whole run
-    return flow_ && seen_ && forces_.size() == seen_->size() ? &flow_->so_far() : nullptr;
-  }
+  const EnergyFlow* flow() const { return knows_all() ? &flow_->so_far() : nullptr; }  // of a whole run
+  DiagnosisAhead* diagnosis() { return knows_all() ? &*diagnosis_ : nullptr; }  // of one that was begun
   const RowsAhead& rows() const { return rows_; }
   const std::optional<Mobility>& mobility() const { return mobility_; }
 
@@ -47,16 +48,18 @@ class RunAhead {
   };
   void examine(Piece& piece, bool start);
   void find_forces(const Trajectory& piece);  // and what flows in and out
+  bool knows_all() const { return flow_ && forces_.size() == seen_->trajectory.size(); }
   void drop();
 
   bool on_;
   std::size_t next_ = 0;  // state
   std::deque<Piece> pieces_;
   std::optional<Mobility> mobility_;
-  std::optional<Trajectory> seen_;  // all pieces, whose models it shares
+  std::optional<Simulation> seen_;  // all pieces, whose models it shares
   std::optional<StateForces> solver_;
   std::optional<RunEnergyFlow> flow_;
   std::vector<SolvedPoint> forces_;
+  std::optional<DiagnosisAhead> diagnosis_;
   RowsAhead rows_;
   TaskQueue queue_;  // last: it ends before what it works on
 };

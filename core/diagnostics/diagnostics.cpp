@@ -11,6 +11,7 @@
 
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/columns.hpp"
+#include "core/diagnostics/diagnosis_ahead.hpp"
 #include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/energy_flow.hpp"
 #include "core/diagnostics/fold_angle.hpp"
@@ -239,24 +240,6 @@ bool present(Needs needs, const Simulation& run) {
   return true;
 }
 
-// Per rod of the whole structure [N]: the multiplier of its row, or what its stretch tells.
-void axial_forces(const Model& model, const State& state, const VectorXd& q, const VectorXd& v,
-                  const VectorXd& lambda, VectorXd& force) {
-  const std::vector<int>& giving = model.system.giving_rods();
-  VectorXd tension = state.tension;
-  if (tension.size() != static_cast<Index>(giving.size())) {
-    tension.resize(static_cast<Index>(giving.size()));
-    model.system.giving_rod_forces(state.t, q, v, tension);
-  }
-  for (std::size_t k = 0; k < giving.size(); ++k) force[giving[k]] = tension[static_cast<Index>(k)];
-  for (Index r = 0; r < force.size(); ++r) {
-    const auto ur = static_cast<std::size_t>(r);
-    const Rod& rod = model.structure.rods[ur];
-    if (!rod.gives) force[r] = lambda[model.system.rod_rows()[ur]] * (1 + rod.warmed(state.t));
-    force[r] /= rod.multiplicity;
-  }
-}
-
 }  // namespace
 
 const Series* Diagnostics::find(std::string_view name) const {
@@ -313,14 +296,15 @@ class StateTable {
     first_own_ = out_.columns.size();
     if (!books_) add_own_columns(run.trajectory.structure(), out_);
     const auto rods = books_ ? Index{0} : static_cast<Index>(run.trajectory.structure().rods.size());
-    out_.axial_force.resize(static_cast<Index>(run.trajectory.size()), rods);
-    out_.force_unique.resize(out_.axial_force.rows(), rods);
+    make_room(static_cast<Index>(run.trajectory.size()), rods);
     out_.rod_unique.assign(static_cast<std::size_t>(rods), 1);
     if (!books_) out_.rod_shown = shown_rods(run.trajectory.structure());
     force_.resize(rods);
   }
 
   void add(std::size_t i) {
+    if (static_cast<Index>(i) >= out_.axial_force.rows())
+      make_room(2 * static_cast<Index>(run_.trajectory.size()), out_.axial_force.cols());
     const State& state = run_.trajectory.state(i);
     if (model_ != &run_.trajectory.model(i)) enter(i);
     system_->follow(state);
@@ -360,7 +344,12 @@ class StateTable {
   }
 
   void fill(const std::function<bool()>& cancelled) {
-    for (std::size_t i = 0; i < run_.trajectory.size() && !(cancelled && cancelled()); ++i) add(i);
+    while (out_.t.size() < run_.trajectory.size() && !(cancelled && cancelled())) add(out_.t.size());
+    make_room(static_cast<Index>(run_.trajectory.size()), out_.axial_force.cols());
+  }
+  // The states of which those that follow have no say.
+  void fill_first() {
+    while (out_.t.size() + StateForces::reach < run_.trajectory.size()) add(out_.t.size());
   }
 
   Diagnostics finish(const ForceUniqueness* uniqueness) {
@@ -374,6 +363,11 @@ class StateTable {
   }
 
  private:
+  void make_room(Index states, Index rods) {
+    out_.axial_force.conservativeResize(states, rods);
+    out_.force_unique.conservativeResize(states, rods);
+  }
+
   static std::vector<const Row*> columns(const Simulation& run, bool books, Diagnostics& out) {
     std::vector<const Row*> used;
     for (const Row& row : rows) {
@@ -445,16 +439,33 @@ Diagnostics diagnosed(const Simulation& run, Look look, const ForceUniqueness* u
 
 }  // namespace
 
+struct DiagnosisAhead::Table : StateTable {
+  using StateTable::StateTable;
+};
+
+DiagnosisAhead::DiagnosisAhead(const Simulation& run, const KnownAhead& known) {
+  if (!any_elastic(run.trajectory.structure()))
+    table_ = std::make_unique<Table>(run, Look::all, nullptr, known);
+}
+DiagnosisAhead::~DiagnosisAhead() = default;
+
+void DiagnosisAhead::judge() {
+  if (table_) table_->fill_first();
+}
+
 // Where moduli share the load, what is unique comes first.
 Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancelled, const KnownAhead& ahead) {
   std::optional<ForceUniqueness> uniqueness;
   const auto find_uniqueness = [&] {
     if (cancelled && cancelled()) return;
-    if (ahead.name_poses) ahead.name_poses();
+    if (ahead.name_poses) (*ahead.name_poses)();
     uniqueness.emplace(run);
   };
   if (any_elastic(run.trajectory.structure())) find_uniqueness();
-  StateTable table(run, Look::all, uniqueness ? &*uniqueness : nullptr, ahead);
+  std::optional<StateTable> own;
+  const bool begun = ahead.judged && ahead.judged->table_;
+  StateTable& table =
+      begun ? *ahead.judged->table_ : own.emplace(run, Look::all, uniqueness ? &*uniqueness : nullptr, ahead);
   table.fill(cancelled);
   if (!uniqueness) find_uniqueness();
   return table.finish(uniqueness ? &*uniqueness : nullptr);

@@ -185,7 +185,7 @@ bool StateForces::rests(std::size_t i, const std::vector<std::size_t>& states) c
 // six poses before it.
 void StateForces::interpolate(std::size_t i, Close& here) {
   // States on either side: short steps are many in the round-off, parts of a failed one before an end more.
-  constexpr std::size_t far = 8, far_from_end = 64;
+  constexpr std::size_t far = reach, far_from_end = 64;
   const std::vector<std::size_t> behind = beside(i, +1, far);
   const Close limit = behind.empty() ? limit_behind(i) : Close{};
   const bool ends = limit.point.known, one_way = behind.empty(), at_end = one_way && !ends;
@@ -252,6 +252,23 @@ void StateForces::interpolate(std::size_t i, Close& here) {
     here.point.lambda = std::move(lambda);
     here.doubt = std::move(doubt);
     if (least <= negligible * here.point.lambda.lpNorm<Eigen::Infinity>()) return;
+  }
+}
+
+void axial_forces(const Model& model, const State& state, const VectorXd& q, const VectorXd& v,
+                  const VectorXd& lambda, VectorXd& force) {
+  const std::vector<int>& giving = model.system.giving_rods();
+  VectorXd tension = state.tension;
+  if (tension.size() != static_cast<Index>(giving.size())) {
+    tension.resize(static_cast<Index>(giving.size()));
+    model.system.giving_rod_forces(state.t, q, v, tension);
+  }
+  for (std::size_t k = 0; k < giving.size(); ++k) force[giving[k]] = tension[static_cast<Index>(k)];
+  for (Index r = 0; r < force.size(); ++r) {
+    const auto ur = static_cast<std::size_t>(r);
+    const Rod& rod = model.structure.rods[ur];
+    if (!rod.gives) force[r] = lambda[model.system.rod_rows()[ur]] * (1 + rod.warmed(state.t));
+    force[r] /= rod.multiplicity;
   }
 }
 

@@ -27,6 +27,7 @@ struct SolvedPoint {
 // follow are solved along.
 class StateForces {
  public:
+  static constexpr std::size_t reach = 8;
   // `ahead`: what another one found at the first states already; null: nothing.
   explicit StateForces(const Trajectory& trajectory, const std::vector<SolvedPoint>* ahead = nullptr)
       : trajectory_(trajectory), ahead_(ahead) {}
@@ -35,7 +36,8 @@ class StateForces {
   // an event in a singular pose they are the extrapolated ones that the state holds. Accelerations are those
   // of the nodes, NaN where they are not known [m/s^2]. Where a pose is so near to a singular one that its
   // round-off changes them, both are those of the nearest pose that fulfils the constraints, or interpolated
-  // between the nearest ones before and behind that tell more.
+  // between the nearest ones before and behind that tell more, of which none is more than `reach` states
+  // behind.
   VectorXd multipliers(std::size_t i, VectorXd& node_acceleration);
   // By how much each of the multipliers that were asked for last may be off for that; empty: it is none of
   // those poses.
@@ -85,6 +87,10 @@ class StateForces {
   };
   Seen seen_;
 };
+
+// Per rod of the whole structure [N]: the multiplier of its row, or what its stretch tells.
+void axial_forces(const Model& model, const State& state, const VectorXd& q, const VectorXd& v,
+                  const VectorXd& lambda, VectorXd& force);
 
 // Stretches of a run whose pose is so near to a singular one that its rounding says forces which are unique
 // elsewhere: where a drive rests in a flat pose. The first one's first and last state; the same number twice

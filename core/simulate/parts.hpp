@@ -13,7 +13,7 @@ struct Parts {
   std::function<void(Stepper::Window, Stepper&)> take = {};
   // Is shown the run after every step: what it begins with may be looked at while it goes on. States at its
   // end may still be taken back.
-  std::function<void(const Trajectory&)> look = {};
+  std::function<void(const Simulation&)> look = {};
   Archive* archived = nullptr;  // a stepper to go on with; null: from the start
 };
 

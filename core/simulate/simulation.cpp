@@ -133,7 +133,7 @@ Simulation simulate_in_parts(std::shared_ptr<const Model> model, const SolverOpt
     progress.at(stepper.time());
     if (hooks.cancelled && hooks.cancelled()) stepper.stop();
     if (!stepper.step()) break;
-    if (parts.look) parts.look(stepper.run().trajectory);
+    if (parts.look) parts.look(stepper.run());
     if (!parts.take || stepper.run().trajectory.size() - stepper.first_new() < parts.states + parts.around)
       continue;
     Stepper::Window window = stepper.take_window(parts.around);

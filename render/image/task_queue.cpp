@@ -60,6 +60,11 @@ void TaskQueue::add(std::function<void()> task) {
   changed_.notify_all();
 }
 
+bool TaskQueue::any_waiting() {
+  const std::lock_guard lock(mutex_);
+  return !waiting_.empty();
+}
+
 void TaskQueue::give_up() {
   std::unique_lock lock(mutex_);
   waiting_.clear();

@@ -22,6 +22,7 @@ class TaskQueue {
 
   // Waits while two tasks a thread are waiting already, so that what they hold stays bounded.
   void add(std::function<void()> task);
+  bool any_waiting();
   void finish();  // wait for all
 
   // Where tasks look at what lives in a scope, one at the end of its variables: no task goes on beyond it.
