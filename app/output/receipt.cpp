@@ -119,15 +119,16 @@ std::string ReceiptWriter::note(const fs::path& target) {
   return std::string(note_begin) + std::string(checksum_digits, '0') + "\"," + text.substr(1);
 }
 
-void ReceiptWriter::finish(const fs::path& temporary, const fs::path& target) {
+bool ReceiptWriter::finish(const fs::path& temporary, const fs::path& target) {
   const std::string extension = target.extension().string();
-  if (!takes_note(extension)) return;
+  if (!takes_note(extension)) return false;
   TextFile read = read_result_file(temporary.string());
-  if (!read.error.empty()) return;  // no longer there: whoever wanted it is told
+  if (!read.error.empty()) return false;  // no longer there: whoever wanted it is told
   std::string file = std::move(read.text);
   if (extension != ".mp4") file = with_note(std::move(file), extension, note(target));
   file = sealed(std::move(file), extension);
   replace_bytes(temporary, file);
+  return true;
 }
 
 std::string command_in_words(const Receipt& receipt) {

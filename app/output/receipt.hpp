@@ -50,7 +50,7 @@ class ReceiptWriter final : public FileFinisher {
   ReceiptWriter& operator=(const ReceiptWriter&) = delete;
 
   std::string note(const std::filesystem::path& target) override;
-  void finish(const std::filesystem::path& temporary, const std::filesystem::path& target) override;
+  bool finish(const std::filesystem::path& temporary, const std::filesystem::path& target) override;
 
  private:
   std::vector<std::string> words_;

@@ -48,12 +48,14 @@ bool in_parts(const Scene& scene, const Arguments& arguments) {
   throw FileError(directory, "holds no unfinished run of this scene to go on with; leave --resume out");
 }
 
-// Singular poses are looked for beside the diagnosis, which asks for them where it needs them.
-Diagnostics judged(Simulation& run, RunAhead& ahead) {
+// Singular poses are looked for beside the longest table and the diagnosis, which asks for them where it
+// needs them.
+Diagnostics judged(Simulation& run, const std::filesystem::path& directory, RunAhead& ahead) {
   const auto waited_enough = [] { return interrupted_for(0.5); };
   std::vector<Event> poses;
   const TaskQueue::Scope scope(ahead.beside());
   ahead.beside().add([&] { poses = find_singular_poses(run.trajectory, waited_enough); });
+  if (!directory.empty()) ahead.trajectory_csv(directory, run.trajectory);
   const std::function<void()> name_poses = [&] {
     ahead.beside().finish();
     record_singular_poses(run, poses);
@@ -65,8 +67,7 @@ int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, O
               Beside film, RunAhead& ahead) {
   const std::filesystem::path& directory = output.path();
   ahead.take(run.trajectory);
-  Diagnostics diagnostics = judged(run, ahead);
-  ahead.leave_out(run.trajectory.size());
+  Diagnostics diagnostics = judged(run, directory, ahead);
   const RememberedExtremes once;  // of the summary and of what is said
   // An earlier run's results stay until these are whole: the disk may be full.
   const std::string summary = write_data(directory, scene, run, diagnostics, as_typed(arguments.words), ahead,

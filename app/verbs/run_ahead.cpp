@@ -68,7 +68,7 @@ void RunAhead::examine(Piece& piece, bool start) {
   if (start) mobility_ = analyse_mobility(run.model().system, run.node_positions(0));
   find_forces(run);
   if (flow()) diagnosis_->judge();
-  piece.rows = trajectory_rows(run);
+  rows_.add(run);
   piece.done = true;
 }
 
@@ -108,21 +108,24 @@ void RunAhead::drop() {
 
 void RunAhead::take(const Trajectory& run) {
   queue_.finish();
-  for (Piece& piece : pieces_) {
-    if (!piece.done || !holds(run, rows_.states, piece.run)) return drop();
-    rows_.states += piece.run.size();
-    rows_.text.push_back(std::move(piece.rows));
+  std::size_t states = 0;
+  for (const Piece& piece : pieces_) {
+    if (!piece.done || !holds(run, states, piece.run)) return drop();
+    states += piece.run.size();
   }
   if (pieces_.empty()) return;
-  pieces_.push_back({run.part(rows_.states, run.size(), {})});
+  pieces_.push_back({run.part(states, run.size(), {})});
   find_forces(pieces_.back().run);
 }
 
-void RunAhead::leave_out(std::size_t size) {
-  while (rows_.states > size) {
-    rows_.text.pop_back();
-    rows_.states -= pieces_[rows_.text.size()].run.size();
+PendingFile& RunAhead::trajectory_csv(const std::filesystem::path& directory, const Trajectory& run) {
+  if (!trajectory_csv_ || written_ != run.size()) {
+    rows_.cut(run.size());
+    trajectory_csv_.emplace(directory / "trajectory.csv");
+    write_trajectory_csv(*trajectory_csv_, run, rows_);
+    written_ = run.size();
   }
+  return *trajectory_csv_;
 }
 
 }  // namespace unfurl

@@ -31,11 +31,11 @@ class RunAhead {
   // Behind the run's last step: the rest of its forces is found, and all of what was found is dropped where
   // the run took back a state that was looked at.
   void take(const Trajectory& run);
-  void leave_out(std::size_t size);  // states from here on
+  // DIR/trajectory.csv of these states, which has no name yet; not written again while they are as many.
+  PendingFile& trajectory_csv(const std::filesystem::path& directory, const Trajectory& run);
   const std::vector<SolvedPoint>& forces() const { return forces_; }
   const EnergyFlow* flow() const { return knows_all() ? &flow_->so_far() : nullptr; }  // of a whole run
   DiagnosisAhead* diagnosis() { return knows_all() ? &*diagnosis_ : nullptr; }  // of one that was begun
-  const RowsAhead& rows() const { return rows_; }
   const std::optional<Mobility>& mobility() const { return mobility_; }
 
   TaskQueue& beside() { return queue_; }  // one thread, tasks in their order
@@ -43,7 +43,6 @@ class RunAhead {
  private:
   struct Piece {
     Trajectory run;  // of these states alone
-    std::string rows = {};
     bool done = false;
   };
   void examine(Piece& piece, bool start);
@@ -61,7 +60,9 @@ class RunAhead {
   std::vector<SolvedPoint> forces_;
   std::optional<DiagnosisAhead> diagnosis_;
   RowsAhead rows_;
-  TaskQueue queue_;  // last: it ends before what it works on
+  std::optional<PendingFile> trajectory_csv_;
+  std::size_t written_ = 0;  // states
+  TaskQueue queue_;          // last: it ends before what it works on
 };
 
 }  // namespace unfurl

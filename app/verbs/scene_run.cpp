@@ -79,23 +79,24 @@ std::string write_tables(const std::filesystem::path& directory, const std::stri
                          const std::function<std::string()>& summary,
                          const std::function<void()>& make_room) {
   PendingFile text(directory / "scene.toml"), series(directory / "series.csv"),
-      trajectory(directory / "trajectory.csv"), rod_forces(directory / "rod_forces.csv"),
-      end(directory / "summary.json");
+      rod_forces(directory / "rod_forces.csv"), end(directory / "summary.json");
   const TaskQueue::Scope scope(ahead.beside());
   ahead.beside().add([&] {
-    write_trajectory_csv(trajectory, run.trajectory, ahead.rows());
-    trajectory.complete();
+    ahead.trajectory_csv(directory, run.trajectory);
     write_rod_forces_csv(rod_forces, run.trajectory, diagnostics);
-    rod_forces.complete();
   });
   text.write(scene);
+  text.send();
   write_series_csv(series, diagnostics);
   std::string json = summary();
   end.write(json);
-  for (PendingFile* file : {&text, &series, &end}) file->complete();
+  end.send();
   ahead.beside().finish();
+  PendingFile& trajectory = ahead.trajectory_csv(directory, run.trajectory);
+  const std::array files{&text, &series, &trajectory, &rod_forces, &end};
+  for (PendingFile* file : files) file->complete();
   if (make_room) make_room();
-  commit_together(std::array{&text, &series, &trajectory, &rod_forces, &end});
+  commit_together(files);
   return json;
 }
 

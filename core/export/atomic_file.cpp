@@ -242,12 +242,18 @@ void PendingFile::write(std::string_view text) {
   write(std::as_bytes(std::span(text.data(), text.size())));
 }
 
+void PendingFile::send(const Checksum* sum) {
+  if (sum) checksum_ = sum->text();
+  ::sync_file_range(file_, 0, 0, SYNC_FILE_RANGE_WRITE);  // a hint: where it fails, fsync does it all
+}
+
 void PendingFile::complete(Flush flush) {
   if (std::exchange(complete_, true)) return;
-  if (FileFinisher* finisher = file_finisher(); finisher) finisher->finish(temporary_, target_);
+  if (FileFinisher* finisher = file_finisher(); finisher && finisher->finish(temporary_, target_))
+    checksum_.clear();
   if (flush == Flush::at_once && ::fsync(file_) != 0 && errno != EINVAL && errno != EROFS)
     throw FileError(target_, errno);
-  if (file_watcher.load()) checksum_ = checksum_of_file(temporary_);
+  if (file_watcher.load() && checksum_.empty()) checksum_ = checksum_of_file(temporary_);
 }
 
 void PendingFile::announce() {

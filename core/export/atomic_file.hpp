@@ -12,6 +12,8 @@
 
 namespace unfurl {
 
+class Checksum;
+
 // A file that could not be written or read. what(): "out/frames/x.png: no space left on device".
 class FileError : public Error {
  public:
@@ -64,6 +66,9 @@ class PendingFile {
   int file() const { return file_; }                                // open for writing
   void write(std::span<const std::byte> bytes);                     // throws FileError, as the others
   void write(std::string_view text);
+  // All bytes are there: on their way to the disk from now on, which complete() waits for. `sum`: theirs,
+  // where who wrote them knows it, so that nobody reads them again.
+  void send(const Checksum* sum = nullptr);
   // All bytes are there, and on the disk when it returns. A thread may do this for a file.
   void complete(Flush flush = Flush::at_once);
   void commit(Flush flush = Flush::at_once);  // complete and rename onto the target; throws FileError
@@ -102,7 +107,8 @@ class FileFinisher {
  public:
   // What a program that writes a whole file by itself shall put into it as a comment.
   virtual std::string note(const std::filesystem::path& target) = 0;
-  virtual void finish(const std::filesystem::path& temporary, const std::filesystem::path& target) = 0;
+  // Whether the file has other bytes now.
+  virtual bool finish(const std::filesystem::path& temporary, const std::filesystem::path& target) = 0;
 
  protected:
   FileFinisher() = default;

@@ -25,13 +25,14 @@ namespace csv_tables {
 // Writes row by row, so that a long run needs no second copy of itself in memory.
 class CsvRows {
  public:
-  // Into a file that is open, a copy of which is kept open here.
-  CsvRows(const std::filesystem::path& path, int file) : path_(path), file_(::fdopen(::dup(file), "wb")) {
+  // Into a file that is open, a copy of which is kept open here. `sum`: gets that of all rows.
+  CsvRows(const std::filesystem::path& path, int file, Checksum* sum = nullptr)
+      : path_(path), file_(::fdopen(::dup(file), "wb")), sum_(sum) {
     if (!file_) throw FileError(path_, errno);
     std::setvbuf(file_, nullptr, _IOFBF, std::size_t{1} << 16U);
   }
   // Behind a text.
-  explicit CsvRows(std::string& text) : text_(&text) {}
+  CsvRows(std::string& text, Checksum* sum) : text_(&text), sum_(sum) {}
   ~CsvRows() {
     if (file_) std::fclose(file_);
   }
@@ -56,6 +57,7 @@ class CsvRows {
 
   void end_row() {
     row_[used_++] = '\n';  // room for it is always left
+    if (sum_) sum_->add(std::string_view(row_.data(), used_));
     if (text_)
       text_->append(row_, 0, used_);
     else if (std::fwrite(row_.data(), 1, used_, file_) != used_)
@@ -63,8 +65,12 @@ class CsvRows {
     used_ = 0;
   }
 
-  void rows(const std::string& text) {  // that are one already
-    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) throw FileError(path_, errno);
+  void begin(const RowsAhead& ahead) {
+    for (const RowsAhead::Piece& piece : ahead.pieces()) {
+      const std::string& text = piece.text;
+      if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) throw FileError(path_, errno);
+      *sum_ = piece.sum;
+    }
   }
 
   void close() {
@@ -109,6 +115,7 @@ class CsvRows {
   std::filesystem::path path_;
   std::FILE* file_ = nullptr;
   std::string* text_ = nullptr;
+  Checksum* sum_ = nullptr;
   std::vector<Known> known_ = std::vector<Known>(512);
   std::string row_ = std::string(4096, ' ');
   std::size_t used_ = 0;  // of it
@@ -193,33 +200,46 @@ void rod_forces_row(CsvRows& file, const Structure& structure, const Diagnostics
 }  // namespace
 
 void write_series_csv(PendingFile& file, const Diagnostics& diagnostics) {
-  CsvRows rows(file.target(), file.file());
+  Checksum sum;
+  CsvRows rows(file.target(), file.file(), &sum);
   series_header(rows, diagnostics);
   for (std::size_t i = 0; i < diagnostics.t.size(); ++i) series_row(rows, diagnostics, i);
   rows.close();
+  file.send(&sum);
 }
 
-std::string trajectory_rows(const Trajectory& trajectory) {
-  std::string text;
-  CsvRows rows(text);
-  for (std::size_t i = 0; i < trajectory.size(); ++i) trajectory_row(rows, trajectory, i);
-  return text;
+void RowsAhead::add(const Trajectory& piece) {
+  Piece next{{}, states() + piece.size(), pieces_.empty() ? Checksum() : pieces_.back().sum};
+  CsvRows rows(next.text, &next.sum);
+  constexpr std::size_t cell = 20;  // characters, or a few more
+  next.text.reserve(cell * piece.size() * (1 + 6 * piece.structure().node_copies.size()));
+  if (pieces_.empty()) trajectory_header(rows, piece.structure());
+  for (std::size_t i = 0; i < piece.size(); ++i) trajectory_row(rows, piece, i);
+  pieces_.push_back(std::move(next));
+}
+
+void RowsAhead::cut(std::size_t states) {
+  while (!pieces_.empty() && pieces_.back().states > states) pieces_.pop_back();
 }
 
 void write_trajectory_csv(PendingFile& file, const Trajectory& trajectory, const RowsAhead& ahead) {
-  CsvRows rows(file.target(), file.file());
-  trajectory_header(rows, trajectory.structure());
-  for (const std::string& text : ahead.text) rows.rows(text);
-  for (std::size_t i = ahead.states; i < trajectory.size(); ++i) trajectory_row(rows, trajectory, i);
+  Checksum sum;
+  CsvRows rows(file.target(), file.file(), &sum);
+  rows.begin(ahead);
+  if (ahead.states() == 0) trajectory_header(rows, trajectory.structure());
+  for (std::size_t i = ahead.states(); i < trajectory.size(); ++i) trajectory_row(rows, trajectory, i);
   rows.close();
+  file.send(&sum);
 }
 
 void write_rod_forces_csv(PendingFile& file, const Trajectory& trajectory, const Diagnostics& diagnostics) {
-  CsvRows rows(file.target(), file.file());
+  Checksum sum;
+  CsvRows rows(file.target(), file.file(), &sum);
   rod_forces_header(rows, trajectory.structure());
   for (std::size_t i = 0; i < diagnostics.t.size(); ++i)
     rod_forces_row(rows, trajectory.structure(), diagnostics, i);
   rows.close();
+  file.send(&sum);
 }
 
 void write_series_csv(const std::filesystem::path& path, const Diagnostics& diagnostics) {

@@ -9,6 +9,7 @@
 
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/export/atomic_file.hpp"
+#include "core/export/checksum.hpp"
 
 namespace unfurl {
 
@@ -27,16 +28,28 @@ void write_trajectory_csv(const std::filesystem::path& path, const Trajectory& t
 void write_rod_forces_csv(const std::filesystem::path& path, const Trajectory& trajectory,
                           const Diagnostics& diagnostics);
 
-// The same into files that get their names later.
-struct RowsAhead {  // of trajectory.csv, of the run's first states
-  std::size_t states = 0;
-  std::vector<std::string> text = {};
+// What trajectory.csv begins with, its header and rows of a run's first states, piece by piece.
+class RowsAhead {
+ public:
+  void add(const Trajectory& piece);  // the states that follow
+  void cut(std::size_t states);       // no more than so many are left
+
+  struct Piece {
+    std::string text;
+    std::size_t states;  // of this and all before
+    Checksum sum;        // of the file up to its end
+  };
+  const std::vector<Piece>& pieces() const { return pieces_; }
+  std::size_t states() const { return pieces_.empty() ? 0 : pieces_.back().states; }
+
+ private:
+  std::vector<Piece> pieces_;
 };
+
+// The same into files that get their names later, and are on their way to the disk.
 void write_series_csv(PendingFile& file, const Diagnostics& diagnostics);
 void write_trajectory_csv(PendingFile& file, const Trajectory& trajectory, const RowsAhead& ahead = {});
 void write_rod_forces_csv(PendingFile& file, const Trajectory& trajectory, const Diagnostics& diagnostics);
-// trajectory.csv of these states without its header.
-std::string trajectory_rows(const Trajectory& trajectory);
 
 // A cell: in quotes where it holds a comma, a quote or a line break (RFC 4180), where it would begin a
 // comment, and where a reader would cut blanks off its ends.

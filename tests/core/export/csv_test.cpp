@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
 #include <charconv>
@@ -14,6 +15,7 @@
 #include <sstream>
 
 #include "core/export/atomic_file.hpp"
+#include "core/export/checksum.hpp"
 #include "core/export/run_tables.hpp"
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
@@ -55,6 +57,48 @@ double number(const std::string& cell) {
 }
 
 }  // namespace
+
+// Who watches files is told what is in them, however their rows came together: in pieces, of which some were
+// taken back, and where a finisher puts something behind them.
+TEST_CASE("a table's checksum is that of its file") {
+  struct Watcher final : FileWatcher, FileFinisher {
+    std::string told, behind;
+    void before_file(const std::filesystem::path&, const std::string& checksum) override { told = checksum; }
+    std::string note(const std::filesystem::path&) override { return ""; }
+    bool finish(const std::filesystem::path& temporary, const std::filesystem::path&) override {
+      std::ofstream(temporary, std::ios::app | std::ios::binary) << behind;
+      return !behind.empty();
+    }
+  } watcher;
+  watcher.behind = GENERATE("", "# note\n");
+  const Simulation run = short_run("double_pendulum", {"solver.end_time=0.3"});
+  const Trajectory& t = run.trajectory;
+  const Diagnostics d = diagnose(run);
+  FileWatcher* const watcher_before = watch_files(&watcher);
+  FileFinisher* const finisher_before = finish_files(&watcher);
+  const TemporaryFile whole, file;
+  write_trajectory_csv(whole.path, t);
+  CHECK(watcher.told == checksum_of_file(whole.path));
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{7}, t.size()}) {
+    RowsAhead ahead;
+    for (std::size_t i = 0; i < t.size(); i += piece)
+      ahead.add(t.part(i, std::min(i + piece, t.size()), t.options()));
+    CHECK(ahead.states() == t.size());
+    ahead.cut(t.size() - 1);
+    CHECK(ahead.states() < t.size());
+    PendingFile pending(file.path);
+    write_trajectory_csv(pending, t, ahead);
+    pending.commit();
+    CHECK(watcher.told == checksum_of_file(file.path));
+    CHECK(watcher.told == checksum_of_file(whole.path));
+  }
+  write_series_csv(file.path, d);
+  CHECK(watcher.told == checksum_of_file(file.path));
+  write_rod_forces_csv(file.path, t, d);
+  CHECK(watcher.told == checksum_of_file(file.path));
+  watch_files(watcher_before);
+  finish_files(finisher_before);
+}
 
 TEST_CASE("the trajectory in CSV is the trajectory, bit for bit") {
   const Simulation run = short_run("double_pendulum", {"solver.end_time=0.2"});

@@ -185,7 +185,7 @@ TEST_CASE("an MP4 takes a note of any length with any characters") {
   struct Noting final : FileFinisher {
     std::string text;
     std::string note(const fs::path&) override { return text; }
-    void finish(const fs::path&, const fs::path&) override {}
+    bool finish(const fs::path&, const fs::path&) override { return false; }
   } noting;
   for (int i = 0; noting.text.size() < 300'000; ++i)
     noting.text += std::to_string(i) + " a=b; #c \\ \"d\" \u00e9\n";
