@@ -47,6 +47,8 @@ class ClearanceScan {
     }
     const std::size_t last = trajectory.size() - 1;
     for (const std::size_t i : {std::size_t{0}, last / 2, last}) poses_.push_back(trajectory.positions(i));
+    for (int n = 0; n < poses_.front().size() / 3; ++n) along_.push_back(n);
+    std::ranges::sort(along_, {}, [&](int n) { return poses_.front()[3 * Index(n)]; });
   }
 
   void look(std::size_t i) {
@@ -102,11 +104,16 @@ class ClearanceScan {
  private:
   void look_at_pose(double t) {
     sort_by_place();
-    for (std::size_t k = 0; k < order_.size(); ++k)
-      for (std::size_t l = k + 1; l < order_.size(); ++l) {
+    for (std::size_t k = 0; k < boxes_.size(); ++k)
+      for (std::size_t l = k + 1; l < boxes_.size(); ++l) {
+        const Box &a = boxes_[k], &b = boxes_[l];
         // What begins farther on can be no nearer than this, nor can what comes behind it.
-        if (low_[order_[l]] - high_[order_[k]] > std::max(best_.distance, 0.0)) break;
-        compare(std::min(order_[k], order_[l]), std::max(order_[k], order_[l]), t);
+        const double most = std::max(best_.distance, 0.0) + rounding_;
+        if (b.low[0] - a.high[0] > most) break;
+        if (b.low[1] - a.high[1] > most || a.low[1] - b.high[1] > most || b.low[2] - a.high[2] > most ||
+            a.low[2] - b.high[2] > most)
+          continue;
+        compare(std::min(a.rod, b.rod), std::max(a.rod, b.rod), t);
       }
   }
 
@@ -122,16 +129,19 @@ class ClearanceScan {
 
   // Along x, each with its radius.
   void sort_by_place() {
-    low_.resize(rods_.size());
-    high_.resize(rods_.size());
-    order_.resize(rods_.size());
+    boxes_.resize(rods_.size());
     for (std::size_t r = 0; r < rods_.size(); ++r) {
-      const double a = q_[3 * Index(rods_[r].a)], b = q_[3 * Index(rods_[r].b)];
-      low_[r] = std::min(a, b) - radius_[r];
-      high_[r] = std::max(a, b) + radius_[r];
-      order_[r] = r;
+      Box& box = boxes_[r];
+      box.rod = r;
+      for (int k = 0; k < 3; ++k) {
+        const double a = q_[3 * Index(rods_[r].a) + k], b = q_[3 * Index(rods_[r].b) + k];
+        box.low[k] = std::min(a, b) - radius_[r];
+        box.high[k] = std::max(a, b) + radius_[r];
+      }
     }
-    std::sort(order_.begin(), order_.end(), [&](std::size_t k, std::size_t l) { return low_[k] < low_[l]; });
+    std::sort(boxes_.begin(), boxes_.end(), [](const Box& a, const Box& b) { return a.low[0] < b.low[0]; });
+    constexpr double digits = 1e-12;  // whatever rounding says of a distance
+    rounding_ = digits * q_.lpNorm<Eigen::Infinity>();
   }
 
   // In an end of each, or on a pin through both: a node that lies on either in every pose. Of rods that were
@@ -140,17 +150,32 @@ class ClearanceScan {
     if (whole_of_[a] == whole_of_[b]) return true;
     const auto [at, is_new] = meeting_.try_emplace({whole_of_[a], whole_of_[b]}, false);
     if (!is_new) return at->second;
-    const auto near = [&](std::size_t rod, int n, const VectorXd& q) {
-      const std::vector<std::size_t>& parts = wholes_[whole_of_[rod]];
-      return std::any_of(parts.begin(), parts.end(), [&](std::size_t part) {
+    const std::vector<int>&of_a = nodes_on(whole_of_[a]), &of_b = nodes_on(whole_of_[b]);
+    return at->second = std::ranges::find_first_of(of_a, of_b) != of_a.end();
+  }
+
+  // That lie on a whole in every pose.
+  const std::vector<int>& nodes_on(std::size_t whole) {
+    constexpr double near = 1e-6;  // of a part's length
+    const auto [at, is_new] = nodes_on_.try_emplace(whole);
+    if (!is_new) return at->second;
+    const std::vector<std::size_t>& parts = wholes_[whole];
+    const VectorXd& first = poses_.front();
+    const auto is_on = [&](int n, const VectorXd& q) {
+      return std::ranges::any_of(parts, [&](std::size_t part) {
         const Vec3 low = node(q, rods_[part].a), high = node(q, rods_[part].b), p = node(q, n);
-        return segment_distance(p, p, low, high) <= 1e-6 * (high - low).norm();
+        return segment_distance(p, p, low, high) <= near * (high - low).norm();
       });
     };
-    const auto nodes = static_cast<int>(poses_.front().size() / 3);
-    for (int n = 0; n < nodes && !at->second; ++n)
-      at->second = std::all_of(poses_.begin(), poses_.end(),
-                               [&](const VectorXd& q) { return near(a, n, q) && near(b, n, q); });
+    for (const std::size_t part : parts) {
+      const Vec3 a = node(first, rods_[part].a), b = node(first, rods_[part].b);
+      const double beside = 2 * near * (b - a).norm();
+      const auto x = [&](int n) { return first[3 * Index(n)]; };
+      for (auto n = std::ranges::lower_bound(along_, std::min(a.x(), b.x()) - beside, {}, x);
+           n != along_.end() && x(*n) <= std::max(a.x(), b.x()) + beside; ++n)
+        if (std::ranges::all_of(poses_, [&](const VectorXd& q) { return is_on(*n, q); }))
+          at->second.push_back(*n);
+    }
     return at->second;
   }
 
@@ -158,7 +183,7 @@ class ClearanceScan {
     const double axes = axis_distance(a, b), distance = axes - radius_[a] - radius_[b];
     if (!(distance < best_.distance) && !(distance < 0)) return;
     if (meet(a, b)) return;
-    if (distance < 0) overlapping_.emplace(a, b);
+    if (distance < 0) overlapping_.insert({a, b});
     // Round-off shall not say when or which: of those that are as near, the first.
     const auto pair = std::pair(static_cast<int>(a), static_cast<int>(b));
     const bool earlier = t == best_.t && pair < std::pair(best_.rod_a, best_.rod_b);
@@ -173,15 +198,22 @@ class ClearanceScan {
 
   const Trajectory& trajectory_;
   const std::vector<RodCopy>& rods_;
-  std::vector<double> radius_, low_, high_;
+  std::vector<double> radius_;
   double thinnest_ = std::numeric_limits<double>::infinity();  // of rods whose thickness is known
   // Rods that were cut have their parts one after the other: of each rod its whole, of each whole its parts.
   std::vector<std::size_t> whole_of_;
   std::vector<std::vector<std::size_t>> wholes_;
   std::string last_whole_;
-  std::vector<std::size_t> order_;
+  struct Box {
+    double low[3], high[3];
+    std::size_t rod;
+  };
+  std::vector<Box> boxes_;
+  double rounding_ = 0;
   std::vector<VectorXd> poses_;  // the first, one in the middle, the last
   VectorXd q_;
+  std::vector<int> along_;  // nodes by their place along x in the first
+  std::map<std::size_t, std::vector<int>> nodes_on_;
   std::map<std::pair<std::size_t, std::size_t>, bool> meeting_;
   bool found_ = false;
   Clearance best_{.distance = std::numeric_limits<double>::infinity()};

@@ -69,6 +69,51 @@ TEST_CASE("two rods that pass each other are nearest where straight lines say, b
   CHECK(c->states == run.trajectory.size());
 }
 
+// Boxes around rods leave pairs out; all pairs, each looked at, say which are nearest. A third of the rods
+// hang on the one before; thick ones pass through others.
+TEST_CASE("of many rods the nearest pair and all that overlap are those of all pairs") {
+  for (const double radius : {0.0, 0.02, 0.15}) {
+    INFO("radius " << radius);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> some(-1, 1);
+    CustomSpec spec;
+    const auto point = [&](const Vec3& beside, double reach) {
+      const std::string name = "N" + std::to_string(spec.nodes.size());
+      const Vec3 at = beside + reach * Vec3(some(random), some(random), some(random));
+      spec.nodes.push_back({name, at, {0, 0, 0}, 0.0, false});
+      return name;
+    };
+    for (int r = 0; r < 60; ++r) {
+      const std::string from = r % 3 == 2 ? spec.nodes.back().name : point({0, 0, 0}, 3);
+      const std::string to = point(spec.nodes.back().position, 0.6);
+      spec.rods.push_back({"R" + std::to_string(r), {from, to}, 1.0});
+    }
+    Structure structure = build_custom(spec);
+    for (Rod& rod : structure.rods) rod.radius = radius;
+    const Simulation run = simulate(make_model(structure), dvm_options(3, 0.01, 0.01));
+    const VectorXd q = run.trajectory.positions(0);
+    const auto node = [&](int n) -> Vec3 { return q.segment<3>(3 * Index(n)); };
+    double least = 1e9;
+    std::size_t overlapping = 0;
+    std::pair<int, int> pair;
+    const std::vector<RodCopy>& rods = run.trajectory.structure().rod_copies;
+    for (std::size_t a = 0; a < rods.size(); ++a)
+      for (std::size_t b = a + 1; b < rods.size(); ++b) {
+        if (rods[a].b == rods[b].a) continue;
+        const double distance =
+            segment_distance(node(rods[a].a), node(rods[a].b), node(rods[b].a), node(rods[b].b)) - 2 * radius;
+        if (distance < least) least = distance, pair = {static_cast<int>(a), static_cast<int>(b)};
+        overlapping += distance < 0 ? 1 : 0;
+      }
+    CHECK((overlapping > 0) == (radius > 0.1));
+    const auto c = least_clearance(run.trajectory, 1);
+    REQUIRE(c);
+    CHECK(c->distance == Approx(least).epsilon(0).margin(1e-15));  // radii are taken off one by one
+    CHECK(std::pair(c->rod_a, c->rod_b) == pair);
+    CHECK(c->overlapping == overlapping);
+  }
+}
+
 TEST_CASE("rods that pass through each other are said to, those that meet in a node are not") {
   const Simulation run =
       simulate(make_model(passing({0.5, 0.004, 0.1}, {-0.8, 0, 0}, 0.012, 0.019)), dvm_options(3, 0.01, 1.0));
