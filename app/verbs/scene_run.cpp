@@ -73,7 +73,7 @@ Simulation simulate_scene(const Scene& scene, std::shared_ptr<const Model> model
 
 namespace {
 
-// The tables, the longer ones beside what is done meanwhile; all of them take their places together.
+// The tables, beside the summary; all of them take their places together.
 std::string write_tables(const std::filesystem::path& directory, const std::string& scene,
                          const Simulation& run, const Diagnostics& diagnostics, RunAhead& ahead,
                          const std::function<std::string()>& summary,
@@ -84,10 +84,10 @@ std::string write_tables(const std::filesystem::path& directory, const std::stri
   ahead.beside().add([&] {
     ahead.trajectory_csv(directory, run.trajectory);
     write_rod_forces_csv(rod_forces, run.trajectory, diagnostics);
+    write_series_csv(series, diagnostics);
   });
   text.write(scene);
   text.send();
-  write_series_csv(series, diagnostics);
   std::string json = summary();
   end.write(json);
   end.send();
