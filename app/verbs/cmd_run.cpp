@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl run SCENE -o DIR: simulate; write data.
 #include <algorithm>
-#include <functional>
 #include <iostream>
 
 #include "app/command.hpp"
@@ -56,11 +55,11 @@ Diagnostics judged(Simulation& run, const std::filesystem::path& directory, RunA
   const TaskQueue::Scope scope(ahead.beside());
   ahead.beside().add([&] { poses = find_singular_poses(run.trajectory, waited_enough); });
   if (!directory.empty()) ahead.trajectory_csv(directory, run.trajectory);
-  const std::function<void()> name_poses = [&] {
+  const auto name_poses = [&] {
     ahead.beside().finish();
     record_singular_poses(run, poses);
   };
-  return judge_run(run, {&ahead.forces(), ahead.flow(), ahead.diagnosis(), &name_poses});
+  return judge_run(run, {&ahead.forces(), ahead.flow(), name_poses, ahead.diagnosis()});
 }
 
 int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, OwnDirectory& output,

@@ -17,10 +17,6 @@ int helpers(int threads) {
   return threads == 1 || std::thread::hardware_concurrency() == 1 ? 0 : 1;
 }
 
-std::shared_ptr<const Model> kept_elsewhere(const Model& model) {
-  return std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &model);
-}
-
 template <class Numbers>
 bool same_bits(const Numbers& a, const Numbers& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() &&
@@ -35,12 +31,12 @@ bool same_state(const State& a, const State& b) {
          same_bits(a.stage_tension, b.stage_tension);
 }
 
-// The states of a piece stand at these of the run.
-bool holds(const Trajectory& run, std::size_t first, const Trajectory& piece) {
-  if (run.size() < first + piece.size()) return false;
-  for (std::size_t k = 0; k < piece.size(); ++k)
-    if (&run.model(first + k) != &piece.model(k) || !same_state(run.state(first + k), piece.state(k)) ||
-        run.report(first + k).singular_event != piece.report(k).singular_event)
+// A run begins with these states.
+bool begins_with(const Trajectory& run, const Trajectory& states) {
+  if (run.size() < states.size()) return false;
+  for (std::size_t k = 0; k < states.size(); ++k)
+    if (&run.model(k) != &states.model(k) || !same_state(run.state(k), states.state(k)) ||
+        run.report(k).singular_event != states.report(k).singular_event)
       return false;
   return true;
 }
@@ -52,37 +48,29 @@ RunAhead::RunAhead(int threads) : on_(helpers(threads) > 0), queue_(helpers(thre
 void RunAhead::look(const Simulation& run, std::size_t states) {
   const Trajectory& so_far = run.trajectory;
   if (!on_ || so_far.size() < next_ + states + unsettled || queue_.any_waiting()) return;
-  const bool start = next_ == 0;
-  if (start)
-    seen_.emplace(Simulation{.trajectory = Trajectory(kept_elsewhere(so_far.model()), so_far.options()),
-                             .options = run.options});
+  if (next_ == 0)
+    seen_.emplace(Simulation{.trajectory = so_far.part(0, 0, so_far.options()), .options = run.options});
   const std::size_t end = next_ + (so_far.size() - unsettled - next_) / states * states;
-  Piece& piece = pieces_.emplace_back(Piece{so_far.part(next_, end, {})});
+  queue_.add([this, piece = std::make_shared<Trajectory>(so_far.part(next_, end, {}))] { examine(*piece); });
   next_ = end;
-  queue_.add([this, &piece, start] { examine(piece, start); });
 }
 
-void RunAhead::examine(Piece& piece, bool start) {
+void RunAhead::examine(Trajectory& piece) {
   if (interrupted_for(0.5)) return;
-  const Trajectory& run = piece.run;
-  if (start) mobility_ = analyse_mobility(run.model().system, run.node_positions(0));
-  find_forces(run);
+  if (!mobility_) mobility_ = analyse_mobility(piece.model().system, piece.node_positions(0));
+  rows_.add(piece);
+  find_forces(std::move(piece));
   if (flow()) diagnosis_->judge();
-  rows_.add(run);
-  piece.done = true;
 }
 
-void RunAhead::find_forces(const Trajectory& piece) {
+void RunAhead::find_forces(Trajectory&& piece) {
   Trajectory& seen = seen_->trajectory;
   if (!flow_) {
     solver_.emplace(seen);
     flow_.emplace(seen, true);
     diagnosis_.emplace(*seen_, KnownAhead{&forces_, &flow_->so_far()});
   }
-  for (std::size_t k = 0; k < piece.size(); ++k) {
-    if (&piece.model(k) != &seen.last_model()) seen.change_model(kept_elsewhere(piece.model(k)));
-    seen.append(piece.state(k), piece.report(k));
-  }
+  seen.append(std::move(piece));
   for (std::size_t i = forces_.size(); i < seen.size() && !interrupted_for(0.5); ++i) {
     if (i > 0) flow_->step_to(i, &*solver_);
     forces_.push_back(solver_->at(i));
@@ -100,7 +88,6 @@ void RunAhead::drop() {
   flow_.reset();
   solver_.reset();
   seen_.reset();
-  pieces_.clear();
   forces_.clear();
   rows_ = {};
   mobility_.reset();
@@ -108,14 +95,9 @@ void RunAhead::drop() {
 
 void RunAhead::take(const Trajectory& run) {
   queue_.finish();
-  std::size_t states = 0;
-  for (const Piece& piece : pieces_) {
-    if (!piece.done || !holds(run, states, piece.run)) return drop();
-    states += piece.run.size();
-  }
-  if (pieces_.empty()) return;
-  pieces_.push_back({run.part(states, run.size(), {})});
-  find_forces(pieces_.back().run);
+  if (next_ == 0) return;
+  if (rows_.states() != next_ || !begins_with(run, seen_->trajectory)) return drop();
+  find_forces(run.part(next_, run.size(), {}));
 }
 
 PendingFile& RunAhead::trajectory_csv(const std::filesystem::path& directory, const Trajectory& run) {

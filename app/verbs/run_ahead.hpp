@@ -2,7 +2,6 @@
 // What a second core does for a run.
 #pragma once
 
-#include <deque>
 #include <optional>
 
 #include "core/diagnostics/diagnosis_ahead.hpp"
@@ -41,20 +40,15 @@ class RunAhead {
   TaskQueue& beside() { return queue_; }  // one thread, tasks in their order
 
  private:
-  struct Piece {
-    Trajectory run;  // of these states alone
-    bool done = false;
-  };
-  void examine(Piece& piece, bool start);
-  void find_forces(const Trajectory& piece);  // and what flows in and out
+  void examine(Trajectory& piece);       // which is taken over
+  void find_forces(Trajectory&& piece);  // and what flows in and out
   bool knows_all() const { return flow_ && forces_.size() == seen_->trajectory.size(); }
   void drop();
 
   bool on_;
   std::size_t next_ = 0;  // state
-  std::deque<Piece> pieces_;
   std::optional<Mobility> mobility_;
-  std::optional<Simulation> seen_;  // all pieces, whose models it shares
+  std::optional<Simulation> seen_;  // all pieces
   std::optional<StateForces> solver_;
   std::optional<RunEnergyFlow> flow_;
   std::vector<SolvedPoint> forces_;

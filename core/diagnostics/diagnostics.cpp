@@ -458,7 +458,7 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
   std::optional<ForceUniqueness> uniqueness;
   const auto find_uniqueness = [&] {
     if (cancelled && cancelled()) return;
-    if (ahead.name_poses) (*ahead.name_poses)();
+    if (ahead.name_poses) ahead.name_poses();
     uniqueness.emplace(run);
   };
   if (any_elastic(run.trajectory.structure())) find_uniqueness();

@@ -72,10 +72,10 @@ class DiagnosisAhead;
 struct KnownAhead {
   const std::vector<SolvedPoint>* forces = nullptr;  // at its first states
   const EnergyFlow* flow = nullptr;                  // at all of them
-  DiagnosisAhead* judged = nullptr;                  // its first states, by these forces and this flow
   // Sees to it that the run's events name its singular poses: called once, where forces that may not be
-  // unique are asked for. Null: they do.
-  const std::function<void()>* name_poses = nullptr;
+  // unique are asked for. Empty: they do.
+  std::function<void()> name_poses = {};
+  DiagnosisAhead* judged = nullptr;  // its first states, by these forces and this flow
 };
 
 // Column names: kinetic_energy_J potential_energy_J work_J energy_balance_J constraint_max_m

@@ -28,6 +28,15 @@ void Trajectory::append(State state, StepReport report) {
   reports_.push_back(report);
 }
 
+void Trajectory::append(Trajectory&& next) {
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    if (const Part& p = next.part_of(i); p.model != models_.back().model) change_model(p.model);
+    append(std::move(next.states_[i]), next.reports_[i]);
+  }
+  next.states_.clear();
+  next.reports_.clear();
+}
+
 void Trajectory::pop_back() {
   states_.pop_back();
   reports_.pop_back();

@@ -27,6 +27,7 @@ class Trajectory {
   explicit Trajectory(std::shared_ptr<const Model> model, const SolverOptions& options = {});
 
   void append(State state, StepReport report);
+  void append(Trajectory&& next);  // its states, with the models that they belong to
   void pop_back();
   // States appended from now on belong to another model of the same nodes and rods: one that is locked, say.
   void change_model(std::shared_ptr<const Model> model);

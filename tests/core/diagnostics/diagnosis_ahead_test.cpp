@@ -43,7 +43,7 @@ Diagnostics judged_in_pieces(const Simulation& run, std::size_t piece) {
     }
     ahead.judge();
   }
-  return diagnose(run, {}, {&forces, &flow.so_far(), &ahead});
+  return diagnose(run, {}, {&forces, &flow.so_far(), {}, &ahead});
 }
 
 void check_same_bits(const double* a, const double* b, std::size_t size) {
