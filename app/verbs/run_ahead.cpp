@@ -60,7 +60,7 @@ void RunAhead::examine(Trajectory& piece) {
   if (!mobility_) mobility_ = analyse_mobility(piece.model().system, piece.node_positions(0));
   rows_.add(piece);
   find_forces(std::move(piece));
-  if (flow()) diagnosis_->judge();
+  if (flow()) diagnosis_->judge([this] { return ended_ || interrupted_for(0.5); });
 }
 
 void RunAhead::find_forces(Trajectory&& piece) {
@@ -94,6 +94,7 @@ void RunAhead::drop() {
 }
 
 void RunAhead::take(const Trajectory& run) {
+  ended_ = true;
   queue_.finish();
   if (next_ == 0) return;
   if (rows_.states() != next_ || !begins_with(run, seen_->trajectory)) return drop();

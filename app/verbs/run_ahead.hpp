@@ -2,6 +2,7 @@
 // What a second core does for a run.
 #pragma once
 
+#include <atomic>
 #include <optional>
 
 #include "core/diagnostics/diagnosis_ahead.hpp"
@@ -46,7 +47,8 @@ class RunAhead {
   void drop();
 
   bool on_;
-  std::size_t next_ = 0;  // state
+  std::atomic<bool> ended_ = false;  // the run: what is not judged yet diagnose() judges beside the poses
+  std::size_t next_ = 0;             // state
   std::optional<Mobility> mobility_;
   std::optional<Simulation> seen_;  // all pieces
   std::optional<StateForces> solver_;

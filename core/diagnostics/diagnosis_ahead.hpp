@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "core/diagnostics/diagnostics.hpp"
@@ -17,8 +18,9 @@ class DiagnosisAhead {
   DiagnosisAhead(const DiagnosisAhead&) = delete;
   DiagnosisAhead& operator=(const DiagnosisAhead&) = delete;
 
-  // Where the states that follow do not change what is said of it; nothing where what is unique comes first.
-  void judge();
+  // States of which those that follow do not change what is said, until it is `enough`, which is asked before
+  // each; nothing where what is unique comes first.
+  void judge(const std::function<bool()>& enough = {});
 
  private:
   friend Diagnostics diagnose(const Simulation&, const std::function<bool()>&, const KnownAhead&);

@@ -348,8 +348,9 @@ class StateTable {
     make_room(static_cast<Index>(run_.trajectory.size()), out_.axial_force.cols());
   }
   // The states of which those that follow have no say.
-  void fill_first() {
-    while (out_.t.size() + StateForces::reach < run_.trajectory.size()) add(out_.t.size());
+  void fill_first(const std::function<bool()>& enough) {
+    while (out_.t.size() + StateForces::reach < run_.trajectory.size() && !(enough && enough()))
+      add(out_.t.size());
   }
 
   Diagnostics finish(const ForceUniqueness* uniqueness) {
@@ -449,8 +450,8 @@ DiagnosisAhead::DiagnosisAhead(const Simulation& run, const KnownAhead& known) {
 }
 DiagnosisAhead::~DiagnosisAhead() = default;
 
-void DiagnosisAhead::judge() {
-  if (table_) table_->fill_first();
+void DiagnosisAhead::judge(const std::function<bool()>& enough) {
+  if (table_) table_->fill_first(enough);
 }
 
 // Where moduli share the load, what is unique comes first.
