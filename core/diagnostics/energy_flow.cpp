@@ -337,6 +337,9 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b, bool sin
   // Warming works against the forces of rods; of stiffly damped ones the states tell these, not the line.
   const bool by_line = stiff && loads_ && points == 0 && system_.elastic_rods();
   const VectorXd pull = by_line ? rod_forces(a) : VectorXd(), change = by_line ? rod_forces(b) - pull : pull;
+  // Both ends in one singular pose: only they are known, and what grows without bound does no work there.
+  const bool in_pose = singular_at_a && singular_at_b && a.lambda.size() == b.lambda.size();
+  const auto bounded = [](const VectorXd& x) { return VectorXd(x.array().isFinite().select(x, 0.0)); };
   VectorXd tension, line;
   double taken_between = 0, by_stiff = 0;
   for (Index i = 0; i < rule.nodes.size(); ++i) {
@@ -347,7 +350,8 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b, bool sin
     if (points > 0) tension = split ? between_stages(b, u) : VectorXd(b.stage_tension.col(i));
     if (by_step) lambda_ = tension.tail(lambda_.size()), tension.conservativeResize(giving);
     if (at_end) lambda_ = i == 0 ? before_.lambda : after_.lambda;
-    const bool known = drives_ && (at_end || by_step ||
+    if (in_pose) lambda_ = (1 - u) * bounded(a.lambda) + u * bounded(b.lambda);
+    const bool known = drives_ && (at_end || by_step || in_pose ||
                                    (split ? index1_->evaluate_on(t, z, w, unused_, lambda_, tension)
                                           : index1_->evaluate(t, z, w, unused_, lambda_, tension)));
     system_.expand(z, q_);

@@ -93,7 +93,8 @@ class DrivenLocator {
     out.error = std::max(out.error, move_free(out.state, best.samples));
     if (out.state.t == edge_ && parts_.led) {
       rests_(free_.coordinates()).setZero();
-      out.held = nodes_at_rest(model_, rests_, edge_, h_);
+      if (comes_to_rest(system_, rests_, 0.5 * (best_.samples.front().t + edge_), h_))
+        out.held = nodes_at_rest(model_, rests_, edge_, h_);
     }
     DrivenStates before;
     finish(out.state, sample(out.state.t, best.apart, false, before) ? before : best.samples);

@@ -112,6 +112,13 @@ bool FreeMotion::solve(const State& state, VectorXd& acceleration, VectorXd& lam
   return a.allFinite() && multipliers.allFinite();
 }
 
+Index FreeMotion::rows_below(const State& state, double bound) {
+  system_.expand(state.z, q_);
+  system_.jacobian(q_, jacobian_, scratch_);
+  rows_of_free_ = among(jacobian_, rows_, place_, std::ssize(free_));
+  return saddle_->factorise(rows_of_free_) ? saddle_->rows_below(bound) : 0;
+}
+
 VectorXd FreeMotion::felt(const State& state, const VectorXd& acceleration, const VectorXd& lambda) {
   VectorXd of_rows = VectorXd::Zero(lambda.size()), of_free = VectorXd::Zero(acceleration.size());
   of_rows(rows_) = lambda(rows_);

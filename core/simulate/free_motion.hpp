@@ -32,6 +32,8 @@ class FreeMotion {
   double move(State& state, double end, const std::vector<double>& edges, const Led& led);
   // Its accelerations in a state, beside those of what is led, and the multipliers of its rows.
   bool solve(const State& state, VectorXd& acceleration, VectorXd& lambda);
+  // How many of its rows are so weak, in a state.
+  Index rows_below(const State& state, double bound);
   // What the rest feels of it then: by those rows, and by inertia that both share.
   VectorXd felt(const State& state, const VectorXd& acceleration, const VectorXd& lambda);
 

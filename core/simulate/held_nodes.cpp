@@ -24,6 +24,10 @@ VectorXd resting_coordinates(const System& system, double t, double h) {
   return rests;
 }
 
+bool comes_to_rest(const System& system, const VectorXd& resting, double t, double h) {
+  return ((resting - resting_coordinates(system, t, h)).array() > 0).any();
+}
+
 std::vector<int> nodes_at_rest(const Model& model, const VectorXd& resting, double t, double h) {
   const auto& [structure, system] = model;
   const std::vector<int> sources = system.sources();

@@ -17,6 +17,9 @@ struct HeldNodes {
 
 // 1 of the solved coordinates that nothing joins to a prescribed motion which is not at rest at the time t.
 VectorXd resting_coordinates(const System& system, double t, double h);
+// Does anything of those that are 1 of `resting` still move at the time t? Others rest as stops, friction or
+// other drives have held them since before.
+bool comes_to_rest(const System& system, const VectorXd& resting, double t, double h);
 
 // The nodes that only those solved coordinates move which are 1 of `resting`, where nothing that is
 // prescribed of these changes behind the time t, in steps of h.

@@ -256,7 +256,9 @@ bool Stepper::Loop::go_to(Crossing crossing) {
         "so later by less than " +
         seconds(crossing.later));
   if (t > now().t) {
-    if (!led_way_ && ends_in_pose(crossing.probe)) end_in_pose(crossing.probe, crossing.probe.at);
+    crossing.probe.state.t = t;
+    if (!stays_in_pose(crossing.probe) && !led_way_ && ends_in_pose(crossing.probe))
+      end_in_pose(crossing.probe, crossing.probe.at);
     crossing.probe.state.t = t;
     come_nearer(crossing.probe.state);
     go_on(std::move(crossing.probe.state), crossing.probe.report);

@@ -9,13 +9,17 @@
 #include "core/constraints/linear_rows.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/math/saddle_solver.hpp"
+#include "core/simulate/driven_parts.hpp"
 #include "core/simulate/free_motion.hpp"
+#include "core/simulate/led_forces.hpp"
 #include "core/simulate/stepper_loop.hpp"
+#include "core/structure/time_edges.hpp"
 
 namespace unfurl {
 namespace {
 
 constexpr int before_it = 8, behind_it = 6;  // states on both sides
+constexpr double weak = 1e-10;               // the square of a singular value
 
 // How weakly rows hold a pose.
 class WeakRows {
@@ -73,7 +77,8 @@ AcrossPose::Step steps_of(Integrator& integrator, double longest) {
 }
 
 // From states before the pose.
-VectorXd multipliers_there(const System& smooth, const AcrossPose& across, const State& there) {
+VectorXd multipliers_there(const System& smooth, const AcrossPose& across, const std::vector<Index>& free,
+                           const State& there) {
   constexpr std::size_t nearer_by = 5;
   System followed = smooth;
   Index1 index1(followed, true);
@@ -84,6 +89,12 @@ VectorXd multipliers_there(const System& smooth, const AcrossPose& across, const
     followed.follow(state);
     if (index1.evaluate(state, acceleration, state.lambda))
       before.push_back({there.t - state.t, std::move(state)});
+  }
+  if (!free.empty()) {
+    FreeMotion beside(followed, free);
+    State led = there;
+    across.between(there.t, led, acceleration);
+    feel_as_at(followed, beside, index1, there, acceleration, before);
   }
   followed.follow(there);
   VectorXd lambda = there.lambda;
@@ -130,70 +141,122 @@ bool Stepper::Loop::stays_beside(Probe& to) {
   return lost_side_ = true;
 }
 
-// The last state that lies clear of the pose at the end of this step, as far back as the motion is smooth and
-// comes nearer to it.
-std::size_t Stepper::Loop::clear_of(double t) const {
-  constexpr double clear = 0.02 * 0.02;  // the square of a singular value
-  constexpr double longest = 60;         // steps
-  const double step = run_.options.step;
-  const std::size_t first = smooth_since();
-  WeakRows rows(system());
+// The first state of the run since which what drives lead is smooth, whatever has switched beside it.
+std::size_t Stepper::Loop::led_since() const {
+  double edge = -std::numeric_limits<double>::infinity();
+  for (const TimeEdge& e : prescribed_edges(model().structure, run_.options.step))
+    if (e.t <= now().t) edge = std::max(edge, e.t);
   std::size_t i = run_.trajectory.size() - 1;
-  while (i > first && t - run_.trajectory.time(i) < 0.99 * step) --i;
-  double pivot = rows.pivot(run_.trajectory.state(i), clear);
-  while (i > first && pivot < clear && t - run_.trajectory.time(i) < longest * step) {
-    const double next = rows.pivot(run_.trajectory.state(i - 1), clear);
-    if (!(next > pivot)) break;
-    pivot = next, --i;
-  }
+  while (i > 0 && !(run_.trajectory.time(i) >= edge && run_.trajectory.time(i - 1) < edge)) --i;
   return i;
 }
 
+// The last state that lies clear of the pose at the end of this step, as far back as the motion comes nearer
+// to it, but for what was before `first`.
+State Stepper::Loop::clear_of(double t, std::size_t first) const {
+  constexpr double clear = 0.02 * 0.02;  // the square of a singular value
+  constexpr double longest = 60;         // steps
+  const double step = run_.options.step;
+  WeakRows rows(system());
+  std::size_t i = run_.trajectory.size() - 1;
+  while (i > first && t - run_.trajectory.time(i) < 0.99 * step) --i;
+  State state = in_last_model(run_.trajectory, i);
+  double pivot = rows.pivot(state, clear);
+  while (i > first && pivot < clear && t - run_.trajectory.time(i) < longest * step) {
+    State before = in_last_model(run_.trajectory, i - 1);
+    const double next = rows.pivot(before, clear);
+    if (!(next > pivot)) break;
+    pivot = next, --i;
+    state = std::move(before);
+  }
+  return state;
+}
+
 // A step that time or a switch ends in such a pose may be solved there, and tell rates with no digits: where
-// drives lead there it is no matter of chance.
+// drives lead there it is no matter of chance. Not where they are on the way to it, as slowly
+// as steps can follow.
 bool Stepper::Loop::ends_in_pose(const Probe& to) const {
-  constexpr double weak = 1e-10;
+  constexpr double soon = 0.1;  // of a step, to the pose
+  constexpr double clear = 1;
   if (!to.report.ok() || to.report.weak_end) return to.report.weak_end;
   if (system().drives().empty()) return false;
   WeakRows rows(system());
   const Index below = rows.below(to.state, weak);
-  return below > 0 && below > rows.below(run_.trajectory.state(clear_of(now().t + to.at)), weak);
+  const double t = now().t + to.at;
+  if (below == 0 || below <= rows.below(clear_of(t, led_since()), weak)) return false;
+  if (same_instant(t, next_prescribed_edge(run_.trajectory))) return true;
+  const double left = std::sqrt(rows.pivot(to.state, clear)), before = std::sqrt(rows.pivot(now(), clear));
+  return left * to.at <= soon * run_.options.step * (before - left);
 }
 bool Stepper::Loop::time_ends_in_pose(const Probe& to) const {
   if (!to.report.ok() || to.report.weak_end) return to.report.weak_end;
   return part_end_ == target_ && (edge_ || target_ >= until_) && ends_in_pose(to);
 }
 
+// The motion across the pose in which this step ends: of what drives alone lead there, as far back as that is
+// smooth, with what is free beside it as it goes on from the present state; or of all of it. From states
+// before the pose alone where it is not gone through.
+std::optional<AroundPose> Stepper::Loop::around_pose(double t, bool led, Samples samples) const {
+  constexpr double shortest = 0.1;                  // of a step
+  constexpr double settled = 1e-8, to_rest = 1e-6;  // of the structure's size
+  const bool through = samples == Samples::around;
+  const double step = run_.options.step;
+  const State from = clear_of(t, led ? led_since() : smooth_since());
+  if (!(t - from.t > shortest * step)) return {};
+  std::vector<Index> free;
+  if (led) free = free_coordinates(system(), from);
+  if (std::ssize(free) == system().solved_coordinates()) return {};
+  const double apart = (t - from.t) / before_it;
+  const std::shared_ptr<const Model> smooth = smooth_model(now().t);
+  const auto integrator = fresh_integrator(*find_method(run_.options.method), smooth->system);
+  std::vector<double> lengths = lengths_around(t, apart, from.t, 0);
+  if (!through) std::erase_if(lengths, [&](double length) { return from.t + length > t; });
+  AroundPose out{smooth, {from, lengths, steps_of(*integrator, step)}, free, apart, {}, led};
+  const AcrossPose& across = out.across;
+  State &there = out.there, fewer;
+  const auto moved = [&](State& state) { return across.move_free(smooth->system, free, now(), state); };
+  const auto as_there = [&](State& state) {
+    state.z(free) = there.z(free), state.w(free) = there.w(free);
+    return true;
+  };
+  if (!across.at(system(), t, there, moved, !through)) return {};
+  // But for where others lie beside another pose, or at a dead centre, to which rods turn by the root of the
+  // way that is left.
+  if (!across.at(system(), t, fewer, as_there, !through, 7)) return {};
+  const double size = reference_length(base_->structure), off = (there.z - fewer.z).lpNorm<Eigen::Infinity>(),
+               off_rate = step * (there.w - fewer.w).lpNorm<Eigen::Infinity>();
+  if (!(samples == Samples::to_rest ? off <= to_rest * size : std::max(off, off_rate) <= settled * size))
+    return {};
+  if (!free.empty()) {
+    FreeMotion motion(system(), free);
+    if (motion.rows_below(there, weak) > motion.rows_below(from, weak)) return {};
+  }
+  if (system().followed_angles() > 0) system().at(now()).count_on(there);
+  return out;
+}
+
 // As time has an edge in that pose, or the run its end: a step to it says nothing of the weak modes, and no
 // step sets out from it. But what leads there passes the pose as smoothly as if nothing began or ended in it;
 // so does what leads out of it, if it had come from before.
 bool Stepper::Loop::end_in_pose(Probe& to, double h, const VectorXd& lambda) {
-  constexpr double shortest = 0.1;  // of a step
-  constexpr double settled = 1e-6;  // of the structure's size
-  const double t = now().t + h, step = run_.options.step;
-  const std::size_t first = smooth_since();
-  const State& from = run_.trajectory.state(clear_of(t));
-  const double apart = (t - from.t) / before_it;
-  if (!(t - from.t > shortest * step)) return false;
-  const std::shared_ptr<const Model> smooth = smooth_model(run_.trajectory.time(first));
-  const auto integrator = fresh_integrator(*find_method(run_.options.method), smooth->system);
+  const double t = now().t + h;
   const VectorXd rests = deployment_.empty() && held_.places.size() == 0 ? find_resting(t) : VectorXd();
-  std::vector<double> lengths = lengths_around(t, apart, from.t, 0);
-  const bool slows = !held_.nodes.empty() && held_.places.size() == 0;
-  if (slows) std::erase_if(lengths, [&](double length) { return from.t + length > t; });
-  const AcrossPose across(from, lengths, steps_of(*integrator, step));
-  State there;
-  if (!across.at(system(), t, there, slows)) return false;
-  if (State fewer;
-      slows && (!across.at(system(), t, fewer, slows, 7) || !((there.z - fewer.z).lpNorm<Eigen::Infinity>() <=
-                                                              settled * reference_length(base_->structure))))
-    return false;  // a dead centre, to which rods turn by the root of the way that is left
+  const bool slows = rests.size() > 0 && !held_.nodes.empty();
+  std::optional<AroundPose> around;
+  if (!slows) around = around_pose(t, true, Samples::around);
+  if (!around) around = around_pose(t, true, slows ? Samples::to_rest : Samples::before);
+  if (!around) around = around_pose(t, false, slows ? Samples::to_rest : Samples::around);
+  if (!around) return false;
+  State& there = around->there;
   if (slows) there.w = (rests.array() > 0).select(0.0, there.w);
-  there.lambda = lambda.size() > 0 ? lambda : multipliers_there(smooth->system, across, there);
-  const auto& solved = across.solved();
+  there.lambda = lambda.size() > 0
+                     ? lambda
+                     : multipliers_there(around->smooth->system, around->across, around->free, there);
+  const auto& solved = around->across.solved();
   const auto before =
-      std::ranges::find_if(solved, [&](const State& s) { return s.t > t - (before_it - 1) * apart; });
-  InPose pose{.t = t, .apart = apart, .before = t - before->t, .angles = before->angles};
+      std::ranges::find_if(solved, [&](const State& s) { return s.t > t - (before_it - 1) * around->apart; });
+  InPose pose{.t = t, .apart = around->apart, .before = t - before->t, .angles = before->angles};
+  pose.led = around->led;
   for (VectorXd* x : {&pose.q, &pose.v, &pose.v_there}) x->resize(system().coordinates());
   system().expand(before->z, pose.q);
   system().expand_rate(before->w, pose.v);
@@ -209,15 +272,29 @@ VectorXd Stepper::Loop::find_resting(double t) {
   const double edge = next_prescribed_edge(run_.trajectory), h = run_.options.step;
   held_ = {};
   if (!same_instant(t, edge)) return {};
+  const State from = clear_of(edge, led_since());
   VectorXd rests = resting_coordinates(system(), edge, h);
-  rests(free_coordinates(system(), run_.trajectory.state(clear_of(edge)))).setZero();
+  rests(free_coordinates(system(), from)).setZero();
+  if (!comes_to_rest(system(), rests, 0.5 * (from.t + edge), h)) return {};
   held_.nodes = nodes_at_rest(model(), rests, edge, h);
   return rests;
 }
 void Stepper::Loop::rest_in_pose() {
   if (held_.nodes.empty() || held_.places.size() > 0) return;
-  if (in_pose_ && in_pose_->t > now().t) in_pose_.reset();
+  // Something else may pass such a pose of its own then.
+  VectorXd nodes = VectorXd::Zero(system().coordinates()), held(now().z.size());
+  for (const int node : held_.nodes) nodes.segment<3>(3 * node).setOnes();
+  system().reduce_sizes(nodes, held);
+  std::vector<Index> others;
+  for (Index i = 0; i < held.size(); ++i)
+    if (!(held[i] > 0)) others.push_back(i);
+  FreeMotion motion(system(), others);
+  State before = now();
+  if (in_pose(now().t)) before.z = system().reduce(in_pose_->q);
+  const bool passes = motion.rows_below(now(), weak) > motion.rows_below(before, weak);
+  if (!passes) in_pose_.reset();
   hold_deployed();
+  if (passes && !holds_) hold_nodes();
   if (holds_) enter_held();
 }
 
@@ -239,41 +316,68 @@ bool Stepper::Loop::find_behind(const State& there) {
   from.z = system.reduce(in_pose_->q - d * change);
   from.w = system.reduce_rate(in_pose_->v + change);
   from.angles = in_pose_->angles;
+  project(system, from);
+  std::vector<Index> free;
+  if (in_pose_->led) free = free_coordinates(system, from);
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most; ++i) {
-    project(system, from);
     AcrossPose across(from, lengths_around(t, in_pose_->apart, from.t, t + 2 * step),
                       steps_of(*integrator, step));
     State found;
-    if (!across.at(system, t, found)) break;
-    const VectorXd z = there.z - found.z, w = there.w - found.w;
+    const auto beside = [&](State& state) {
+      state.z(free) = there.z(free), state.w(free) = there.w(free);
+      return true;
+    };
+    if (!across.at(system, t, found, beside)) break;
+    VectorXd z = there.z - found.z, w = there.w - found.w;
+    z(free).setZero(), w(free).setZero();
     const double off = std::max(z.lpNorm<Eigen::Infinity>(), step * w.lpNorm<Eigen::Infinity>());
     if (!(off < least)) break;
     least = off;
-    behind_ = std::move(across);
+    behind_ = BehindPose{std::move(across), free};
     if (off <= enough * size) break;
     from.w += w;
     from.z += z - d * w;
+    project(system, from);
   }
   if (!(least <= at_all * size)) behind_.reset();
   return behind_.has_value();
 }
 
+// A step out of it may end in it still: there the motion behind it goes on.
+bool Stepper::Loop::stays_in_pose(Probe& to) {
+  if (!to.report.ok() || !in_pose(now().t) || to.state.t <= now().t || (!behind_ && !find_behind(now())))
+    return false;
+  WeakRows rows(system());
+  State before = to.state;
+  before.z = system().reduce(in_pose_->q);
+  if (!(rows.below(to.state, weak) > rows.below(before, weak))) return false;
+  to.state.lambda = multipliers_there(system(), behind_->across, behind_->free, to.state);
+  to.report.singular_event = true;
+  in_pose_->before += to.state.t - in_pose_->t;
+  in_pose_->t = to.state.t;
+  system().expand_rate(to.state.w, in_pose_->v_there);
+  return true;
+}
+
 // The state behind what has changed at once, or began to act: in such a pose its equations say nothing.
 void Stepper::Loop::append_behind(State state) {
-  if (!in_pose_ || !same_instant(in_pose_->t, state.t) || !find_behind(state))
-    return append(std::move(state), StepReport{});
-  state.lambda = multipliers_there(smooth_model(state.t)->system, *behind_, state);
+  if (!in_pose(state.t) || !find_behind(state)) return append(std::move(state), StepReport{});
+  state.lambda = multipliers_there(smooth_model(state.t)->system, behind_->across, behind_->free, state);
   append(std::move(state), {.singular_event = true});
 }
 
 // A step out of it, where the trajectory ends there.
 bool Stepper::Loop::leave_pose(State& state, double h) {
-  if (state.t != now().t) return false;
-  if (!same_instant(in_pose_->t, now().t) || (!behind_ && !find_behind(now())))
-    return in_pose_.reset(), false;
+  const bool ahead = in_pose_->t > now().t && !in_pose(now().t);
+  if (state.t != now().t || ahead) return false;
+  if (!in_pose(now().t) || (!behind_ && !find_behind(now()))) return in_pose_.reset(), false;
+  const auto& [across, free] = *behind_;
   State out;
-  if (!behind_->at(system(), state.t + h, out)) return false;
+  if (!across.at(system(), state.t + h, out,
+                 [&](State& next) { return across.move_free(system(), free, now(), next); }))
+    return false;
+  if (system().followed_angles() > 0) system().at(now()).count_on(out);
   VectorXd acceleration(out.w.size());
   System followed = system();
   followed.follow(out);

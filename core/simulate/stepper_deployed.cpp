@@ -439,12 +439,12 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
   while (run_.trajectory.size() > std::max<std::size_t>(1, new_) && run_.trajectory.end_time() >= event.t)
     run_.trajectory.pop_back();
   regular_ = regular_ || regular_when_deployed(run_.trajectory, event);
+  const bool goes_on = run_.options.at_deployed == "pass";
+  if (Probe there{.state = now()}; goes_on) end_in_pose(there, event.t - now().t, event.lambda);
   go_on(std::move(event), StepReport{.singular_event = !regular_});
   if (run_.options.at_deployed == "latch") return latch();
   if (run_.options.at_deployed == "stop") return run_.status = RunStatus::deployed, false;
-  hold_deployed();
-  if (holds_) enter_held();
-  return true;
+  return rest_in_pose(), true;
 }
 
 // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests

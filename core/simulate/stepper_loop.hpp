@@ -192,10 +192,11 @@ class Stepper::Loop {
   bool accept(Probe& to, double t) {
     if (!to.report.ok()) return fail(may_cross(0) ? stepping::too_near : reason(to.report.status), true);
     to.state.t = t;
+    stays_in_pose(to);
     have_begin_ = to.margins.size() > 0;
     if (have_begin_) begin_ = to;
     go_on(std::move(to.state), to.report);
-    if (in_pose_ && in_pose_->t == now().t) rest_in_pose();
+    if (in_pose(now().t)) rest_in_pose();
     return true;
   }
 
@@ -432,10 +433,17 @@ class Stepper::Loop {
   bool gives_way(Probe& to);
   bool stays_beside(Probe& to);
   bool step_over(Probe& to, double& h);
-  std::size_t clear_of(double t) const;
+  std::size_t led_since() const;
+  State clear_of(double t, std::size_t first) const;
   bool ends_in_pose(const Probe& to) const;
   bool time_ends_in_pose(const Probe& to) const;
+  enum class Samples { around, before, to_rest };
+  std::optional<AroundPose> around_pose(double t, bool led, Samples samples) const;
   bool end_in_pose(Probe& to, double h, const VectorXd& lambda = {});
+  bool in_pose(double t) const {
+    return in_pose_ && same_instant(std::min(in_pose_->t, t), std::max(in_pose_->t, t));
+  }
+  bool stays_in_pose(Probe& to);
   VectorXd find_resting(double t);
   void rest_in_pose();
   bool leave_pose(State& state, double h);
@@ -490,7 +498,7 @@ class Stepper::Loop {
   std::size_t new_ = 0, part_ = 0;    // first state that was not handed over, first of the present part
   double last_step_ = 0, swing_ = 0;  // of the control of steps: where that begins anew, Stepper's
   std::optional<InPose> in_pose_;
-  std::optional<AcrossPose> behind_;  // the motion from there on, as long as the trajectory ends there
+  std::optional<BehindPose> behind_;  // the motion from there on, as long as the trajectory ends there
   bool latched_ = false;
   std::string locked_sides_;  // what was held when a latch locked it; empty: nothing was
   double locked_at_ = 0;
