@@ -33,7 +33,7 @@ void feel_as_at(System& system, FreeMotion& free, Index1& index1, const State& a
     if (feels && index1.evaluate(state, acceleration, state.lambda)) {
       change = free.felt(state, acceleration, state.lambda) - felt;
       change += depends.cwiseProduct(acts - applied[i]);
-      change(own).setZero();
+      change(own) = (index1.applied_force(state) - applied[i])(own);  // as what is felt of it has it
     }
     index1.correct(state, {&state.lambda, 1}, applied[i] + change);
     if (feels) state.lambda(free.rows()) = lambda(free.rows());
