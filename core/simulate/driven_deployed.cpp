@@ -68,6 +68,7 @@ class DrivenLocator {
     while (first_ > 0 && trajectory.size() - first_ < most_back && smooth(first_)) --first_;
     for (std::size_t i = first_ + 1; i < trajectory.size(); ++i)
       if (same_instant(trajectory.time(i - 1), trajectory.time(i))) struck_ = i;
+    switched_ = &trajectory.model(first_) != &model_;
     for (const TimeEdge& edge : all) edges_.push_back(edge.t);
     find_resting();
   }
@@ -139,6 +140,7 @@ class DrivenLocator {
     for (std::size_t i = 1; i < samples.size() && samples[i].t < out.t; ++i)
       if (std::abs(left(samples[i])) > clear_of_pose) from = i;
     State state = samples[from];
+    if (State run = last_before(state.t); switched_ && run.t >= samples.front().t) state = std::move(run);
     if (struck_ > 0 && trajectory_.time(struck_) > state.t) state = trajectory_.state(struck_);
     if (state.tension.size() == 0) {
       system_.follow(state);
@@ -376,6 +378,7 @@ class DrivenLocator {
   std::vector<Tried> tried_;
   std::vector<State> ahead_;
   std::size_t first_;       // state of the run to go back to
+  bool switched_ = false;   // what is free was another one's, in states since then, which samples go on from
   std::size_t struck_ = 0;  // the one behind the last impact since, which what drives lead does not feel
 };
 

@@ -296,7 +296,8 @@ bool Stepper::Loop::goes_to_rest(double h, std::optional<State>& event) {
 
 // What a drive leads may come to rest in the deployed pose: near is not there.
 bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<State>& event) {
-  const bool nearby = (margin_ > rounded_ && crosses(to.state)) || strikes_nearby(to);
+  const bool near = fold(now()) > stepping::singular_margin && fold(to.state) <= stepping::singular_margin,
+             nearby = near || (margin_ > rounded_ && crosses(to.state)) || strikes_nearby(to);
   if (nearby && !system().drives().empty()) {
     const bool regular = regular_when_deployed(run_.trajectory, to.state);
     if (!regular && leads() && goes_to_rest(h, event)) return true;

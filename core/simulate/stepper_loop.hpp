@@ -155,7 +155,8 @@ class Stepper::Loop {
     }
     if (now().t < target.t) return true;
     if (target.edge) integrator_->restart();
-    return !target.jumps || jump(target.jump) || (ended_ = true, false);
+    const bool over = !target.jumps || now().t > target.jump;  // at rest in a flat pose at once
+    return over || jump(target.jump) || (ended_ = true, false);
   } catch (const CannotFactorise& error) {
     return ended_ = true, fail(error.what());
   }

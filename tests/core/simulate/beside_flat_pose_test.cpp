@@ -196,4 +196,99 @@ TEST_CASE("a linkage passes its flat pose as another one is laid flat for good")
     }
 }
 
+// Where a drive comes to rest slowly, steps next to the pose are of rounding: 1e-2 m/s at 3e-6 rad. A load
+// beside it may begin there all the same.
+TEST_CASE("on the way to rest in a flat pose no state is one of rounding, whatever begins beside it") {
+  for (const double from : {0.975, 0.98, 0.985, 0.993})
+    for (const std::vector<std::string>& how : std::vector<std::vector<std::string>>{
+             {"solver.step=0.01"}, {"solver.step=0.0037", "solver.stages=3"}, {"solver.step=0.004"}}) {
+      const std::string load =
+          "[[forces]]\nkind = \"load_over_time\"\nnodes = [\"K\"]\nforce = [2, 0, 0]\n"
+          "times = [0, " +
+          number(from) + ", " + number(from) + ", 3]\nvalues = [0, 0, 1, 1]\n";
+      const Simulation run = run_scene(
+          scene("motion = \"smooth\"\nduration = 1\nto = 0\n", true, body(0), "", line + load), how);
+      CAPTURE(from, how, run.message);
+      REQUIRE(run.status == RunStatus::completed);
+      const Trajectory& t = run.trajectory;
+      const Index i = node(t, "B1");
+      double place = 0, rate = 0;
+      for (std::size_t k = 0; k < t.size(); ++k) {
+        const double u = std::min(t.time(k), 1.0), a = start * (1 - u * u * u * (10 - 15 * u + 6 * u * u)),
+                     da = -start * 30 * u * u * (1 - u) * (1 - u);
+        place = std::max(
+            place,
+            (Vec3(t.node_positions(k).segment<3>(i)) - Vec3(0.7 + std::cos(a), 0, std::sin(a))).norm());
+        rate = std::max(
+            rate,
+            (Vec3(t.node_velocities(k).segment<3>(i)) - da * Vec3(-std::sin(a), 0, std::cos(a))).norm());
+        if (k > 0) CHECK(t.time(k) >= t.time(k - 1));
+      }
+      CHECK(place < 1e-8);
+      CHECK(rate < 1e-6);
+      CHECK(testing::end_positions(run)[node(t, "K")] ==
+            Approx(4 + (1.2 - from) * (1.2 - from)).epsilon(0).margin(1e-11));
+    }
+}
+
+namespace {
+
+constexpr double payload = 0.5, hanging = 0.3, pull = 3;
+
+// Angle, rate and acceleration of a payload that hangs from the second leg's end, as the drive has laid that
+// flat; it is pulled down aside by a load from `from` on.
+Vec3 swung(double from) {
+  using Pair = Eigen::Vector2d;
+  const auto slope = [&](const Led& is, double force, const Pair& y) {
+    const double ax = -std::sin(is.a) * is.dda - std::cos(is.a) * is.da * is.da,
+                 az = std::cos(is.a) * is.dda - std::sin(is.a) * is.da * is.da;
+    return Pair(y[1],
+                ((force / payload - ax) * std::cos(y[0]) - (az + weight + force / payload) * std::sin(y[0])) /
+                    hanging);
+  };
+  const auto led = [](double t) { return cubic(0, std::min(t, 0.5 - 1e-15), 0.5); };
+  Pair y(0, 0);
+  for (const bool pulled : {false, true}) {
+    constexpr int steps = 2000;
+    const double start_of = pulled ? from : 0, h = ((pulled ? 0.5 : from) - start_of) / steps,
+                 force = pulled ? pull : 0;
+    for (int i = 0; i < steps; ++i) {
+      const double t = start_of + i * h;
+      const Pair a = slope(led(t), force, y), b = slope(led(t + h / 2), force, y + h / 2 * a),
+                 c = slope(led(t + h / 2), force, y + h / 2 * b), d = slope(led(t + h), force, y + h * c);
+      y += h / 6 * (a + 2 * b + 2 * c + d);
+    }
+  }
+  return {y[0], y[1], slope(led(0.5), pull, y)[1]};
+}
+
+}  // namespace
+
+// By virtual work: legs, coupler and what the payload pulls its pin with.
+TEST_CASE("a load that jumps on a payload just before its drive comes to rest in a flat pose is felt once") {
+  for (const double left : {1e-2, 1e-4, 1e-6})
+    for (const char* step : {"solver.step=0.01", "solver.step=0.0037"}) {
+      const std::string from = number(0.5 - left),
+                        load = "[[forces]]\nkind = \"load_over_time\"\nnodes = [\"Bk\"]\nforce = [" +
+                               number(pull) + ", 0, " + number(-pull) + "]\ntimes = [0, " + from + ", " +
+                               from + ", 3]\nvalues = [0, 0, 1, 1]\n";
+      const Simulation run =
+          run_scene(scene(laid_flat, true,
+                          R"(, {name = "Bk", position = [1.2, 0, )" + number(std::sin(start) - hanging) +
+                              "], mass = " + number(payload) + "}",
+                          R"(, {nodes = ["B1", "Bk"], mass = 0})", load),
+                    {step, "solver.at_deployed=\"stop\""});
+      CAPTURE(left, step, run.message);
+      REQUIRE(run.status == RunStatus::deployed);
+      const Vec3 y = swung(0.5 - left);
+      const Led is = cubic(0, 0.5 - 1e-15, 0.5);
+      const double lifts = is.dda + hanging * (std::sin(y[0]) * y[2] + std::cos(y[0]) * y[1] * y[1]);
+      const Diagnostics d = diagnose(run);
+      REQUIRE(d.at("mA.torque_unique").values.back() == 1);
+      CHECK(
+          d.at("mA.torque_N_m").values.back() ==
+          Approx(5.0 / 3 * is.dda + 2 * weight + payload * (lifts + weight) + pull).epsilon(0).margin(1e-3));
+    }
+}
+
 }  // namespace beside_flat_pose_test
