@@ -246,23 +246,6 @@ EnergyMeter::Ends EnergyMeter::trusted_ends(const State& a, const State& b) {
 
 namespace {
 
-// Three Gauss points between each two of these times.
-Quadrature gauss_between(const std::vector<double>& points, double from, double to) {
-  static const Quadrature gauss = gauss_legendre(3);
-  std::vector<double> ends = points;
-  ends.insert(ends.begin(), from);
-  ends.push_back(to);
-  const auto parts = static_cast<Index>(ends.size()) - 1;
-  Quadrature out{VectorXd(3 * parts), VectorXd(3 * parts)};
-  for (Index i = 0; i < parts; ++i) {
-    const double begin = ends[static_cast<std::size_t>(i)];
-    const double share = (ends[static_cast<std::size_t>(i) + 1] - begin) / (to - from);
-    out.nodes.segment<3>(3 * i) = ((begin - from) / (to - from) + share * gauss.nodes.array()).matrix();
-    out.weights.segment<3>(3 * i) = share * gauss.weights;
-  }
-  return out;
-}
-
 // Accelerations of the cubic through coordinates and rates.
 std::pair<VectorXd, VectorXd> cubic_ends(const State& a, const State& b) {
   const double h = b.t - a.t;

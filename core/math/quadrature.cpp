@@ -67,4 +67,20 @@ Quadrature gauss_lobatto(int n) {
   return rule;
 }
 
+Quadrature gauss_between(const std::vector<double>& points, double from, double to) {
+  static const Quadrature gauss = gauss_legendre(3);
+  std::vector<double> ends = points;
+  ends.insert(ends.begin(), from);
+  ends.push_back(to);
+  const auto parts = static_cast<Index>(ends.size()) - 1;
+  Quadrature out{VectorXd(3 * parts), VectorXd(3 * parts)};
+  for (Index i = 0; i < parts; ++i) {
+    const double begin = ends[static_cast<std::size_t>(i)];
+    const double share = (ends[static_cast<std::size_t>(i) + 1] - begin) / (to - from);
+    out.nodes.segment<3>(3 * i) = ((begin - from) / (to - from) + share * gauss.nodes.array()).matrix();
+    out.weights.segment<3>(3 * i) = share * gauss.weights;
+  }
+  return out;
+}
+
 }  // namespace unfurl

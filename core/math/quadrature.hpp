@@ -2,6 +2,8 @@
 // Gauss quadrature on [0, 1], computed to round-off rather than tabulated.
 #pragma once
 
+#include <vector>
+
 #include "core/math/types.hpp"
 
 namespace unfurl {
@@ -16,5 +18,9 @@ Quadrature gauss_legendre(int n);
 
 // n >= 2 points, both ends among them; exact for polynomials of degree 2 n - 3.
 Quadrature gauss_lobatto(int n);
+
+// Of what bends at these points between two others: three points of gauss_legendre between each two of them,
+// as shares of the way.
+Quadrature gauss_between(const std::vector<double>& points, double from, double to);
 
 }  // namespace unfurl
