@@ -81,7 +81,8 @@ void Stepper::Loop::come_nearer(const State& state) {
 // What begins or ends at an edge of time so shortly before the pose that the step that ends there counts as
 // there, or cannot be solved, still comes before it.
 bool Stepper::Loop::edge_comes_first(Probe& to, double h, std::optional<State>& event) {
-  constexpr double apart = 1e-8;  // from the pose, to be told from it
+  // From the pose, to be told from it, or for steps to be more than rounding.
+  const double apart = rest_ahead_ ? stepping::singular_margin : 1e-8;
   if (!event || regular_ || !(event->t > next_edge())) return false;
   const std::vector<TimeEdge> edges = time_edges(model().structure, run_.options.step);
   const auto edge = edge_after(edges, now().t);
