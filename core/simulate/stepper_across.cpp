@@ -19,7 +19,7 @@ namespace unfurl {
 namespace {
 
 constexpr int before_it = 8, behind_it = 6;  // states on both sides
-constexpr double weak = 1e-10;               // the square of a singular value
+constexpr double lost_rank = 1e-10;          // the square of a singular value
 
 // How weakly rows hold a pose.
 class WeakRows {
@@ -181,9 +181,9 @@ bool Stepper::Loop::ends_in_pose(const Probe& to) const {
   if (!to.report.ok() || to.report.weak_end) return to.report.weak_end;
   if (system().drives().empty()) return false;
   WeakRows rows(system());
-  const Index below = rows.below(to.state, weak);
+  const Index below = rows.below(to.state, lost_rank);
   const double t = now().t + to.at;
-  if (below == 0 || below <= rows.below(clear_of(t, led_since()), weak)) return false;
+  if (below == 0 || below <= rows.below(clear_of(t, led_since()), lost_rank)) return false;
   if (same_instant(t, next_prescribed_edge(run_.trajectory))) return true;
   const double left = std::sqrt(rows.pivot(to.state, clear)), before = std::sqrt(rows.pivot(now(), clear));
   return left * to.at <= soon * run_.options.step * (before - left);
@@ -229,7 +229,7 @@ std::optional<AroundPose> Stepper::Loop::around_pose(double t, bool led, Samples
     return {};
   if (!free.empty()) {
     FreeMotion motion(system(), free);
-    if (motion.rows_below(there, weak) > motion.rows_below(from, weak)) return {};
+    if (motion.rows_below(there, lost_rank) > motion.rows_below(from, lost_rank)) return {};
   }
   if (system().followed_angles() > 0) system().at(now()).count_on(there);
   return out;
@@ -291,7 +291,7 @@ void Stepper::Loop::rest_in_pose() {
   FreeMotion motion(system(), others);
   State before = now();
   if (in_pose(now().t)) before.z = system().reduce(in_pose_->q);
-  const bool passes = motion.rows_below(now(), weak) > motion.rows_below(before, weak);
+  const bool passes = motion.rows_below(now(), lost_rank) > motion.rows_below(before, lost_rank);
   if (!passes) in_pose_.reset();
   hold_deployed();
   if (passes && !holds_) hold_nodes();
@@ -351,7 +351,7 @@ bool Stepper::Loop::stays_in_pose(Probe& to) {
   WeakRows rows(system());
   State before = to.state;
   before.z = system().reduce(in_pose_->q);
-  if (!(rows.below(to.state, weak) > rows.below(before, weak))) return false;
+  if (!(rows.below(to.state, lost_rank) > rows.below(before, lost_rank))) return false;
   to.state.lambda = multipliers_there(system(), behind_->across, behind_->free, to.state);
   to.report.singular_event = true;
   in_pose_->before += to.state.t - in_pose_->t;
