@@ -360,6 +360,18 @@ bool Stepper::Loop::stays_in_pose(Probe& to) {
   return true;
 }
 
+// The end of a part of a step.
+bool Stepper::Loop::accept(Probe& to, double t) {
+  if (!to.report.ok()) return fail(may_cross(0) ? stepping::too_near : reason(to.report.status), true);
+  to.state.t = t;
+  stays_in_pose(to);
+  have_begin_ = to.margins.size() > 0;
+  if (have_begin_) begin_ = to;
+  go_on(std::move(to.state), to.report);
+  if (in_pose(now().t)) rest_in_pose();
+  return true;
+}
+
 // The state behind what has changed at once, or began to act: in such a pose its equations say nothing.
 void Stepper::Loop::append_behind(State state) {
   if (!in_pose(state.t) || !find_behind(state)) return append(std::move(state), StepReport{});

@@ -190,16 +190,7 @@ class Stepper::Loop {
     return accept(to, part_end_);
   }
 
-  bool accept(Probe& to, double t) {
-    if (!to.report.ok()) return fail(may_cross(0) ? stepping::too_near : reason(to.report.status), true);
-    to.state.t = t;
-    stays_in_pose(to);
-    have_begin_ = to.margins.size() > 0;
-    if (have_begin_) begin_ = to;
-    go_on(std::move(to.state), to.report);
-    if (in_pose(now().t)) rest_in_pose();
-    return true;
-  }
+  bool accept(Probe& to, double t);
 
   // What is said of waves that a step does not resolve holds for parts of steps behind it too: they resolve
   // them, but not what they came as.
