@@ -65,8 +65,9 @@ Limits log_limits(const Extent& e, AxisOf which, bool zeros_at_floor) {
   return {std::pow(10.0, first), std::pow(10.0, std::clamp(last, first + 1, 307.0))};
 }
 
-Limits linear_limits(const Extent& e, AxisOf which) {
+Limits linear_limits(Extent e, AxisOf which) {
   if (e.empty()) return {0.0, 1.0};
+  if (e.lo == 0 && e.hi == 0) e.hi = 1;  // nothing but zeros, of what is never negative more often than not
   const double size = std::max(std::abs(e.lo), std::abs(e.hi)), range = e.hi - e.lo;
   const double rounding = which == AxisOf::x ? 1e-12 : 1e-9;  // of values, of what computed them
   if (range <= rounding * size || range < smallest) {

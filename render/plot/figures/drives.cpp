@@ -7,6 +7,7 @@
 #include "core/diagnostics/peaks.hpp"
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/run_facts.hpp"
+#include "render/plot/same_curves.hpp"
 #include "render/plot/style.hpp"
 #include "render/plot/ticks.hpp"
 
@@ -61,7 +62,7 @@ Figure drives_figure(const Simulation& run, const Diagnostics& d) {
   for (const Series& column : d.columns)
     if (column.name.ends_with(".power_W"))
       f.caption += power_sentence(run, d, column.name.substr(0, column.name.size() - 8));
-  f.caption += events_sentence(run) + " " + method_sentence(run);
+  f.caption += plot::same_curves_sentence(f) + events_sentence(run) + " " + method_sentence(run);
   return f;
 }
 

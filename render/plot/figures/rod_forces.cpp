@@ -7,6 +7,7 @@
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/rod_bands.hpp"
 #include "render/plot/figures/run_facts.hpp"
+#include "render/plot/same_curves.hpp"
 #include "render/plot/ticks.hpp"
 
 namespace unfurl {
@@ -58,8 +59,9 @@ Figure rod_forces_figure(const Simulation& run, const Diagnostics& d) {
     f.caption =
         "Axial force of the rods by group, tension positive, the mean over a rod's length: one line where "
         "the forces of a group differ by less than its width, else the range between the extremes.";
-  f.caption += uniqueness_sentence(structure, d) + peak_sentence(run, d, p) + " " + method_sentence(run);
+  f.caption += uniqueness_sentence(structure, d) + peak_sentence(run, d, p);
   f.panels.push_back(std::move(p));
+  f.caption += " " + method_sentence(run) + plot::same_curves_sentence(f);
   return f;
 }
 

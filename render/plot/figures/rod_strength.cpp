@@ -8,6 +8,7 @@
 #include "render/plot/figures/kinds.hpp"
 #include "render/plot/figures/rod_bands.hpp"
 #include "render/plot/figures/run_facts.hpp"
+#include "render/plot/same_curves.hpp"
 #include "render/plot/ticks.hpp"
 
 namespace unfurl {
@@ -72,9 +73,10 @@ Figure rod_strength_figure(const Simulation& run, const Diagnostics& d) {
   f.caption =
       "Axial stress of the rods, force over area, and their compression as a share of Euler's load with "
       "pinned ends, both of the mean force over a rod's length.";
-  f.caption += peak_sentences(run, d, stress, buckling) + " " + method_sentence(run);
+  f.caption += peak_sentences(run, d, stress, buckling);
   f.panels.push_back(std::move(stress));
   f.panels.push_back(std::move(buckling));
+  f.caption += " " + method_sentence(run) + plot::same_curves_sentence(f);
   return f;
 }
 

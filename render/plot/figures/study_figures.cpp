@@ -7,6 +7,8 @@
 #include <functional>
 #include <limits>
 
+#include "render/plot/limits.hpp"
+#include "render/plot/same_curves.hpp"
 #include "render/plot/ticks.hpp"
 
 namespace unfurl {
@@ -47,7 +49,7 @@ Panel log_panel(std::string x, std::string y) {
   Panel p;
   p.x.label = std::move(x);
   p.y.label = std::move(y);
-  p.x.log = p.y.log = true;
+  p.x.log = p.y.log = p.y.zeros_at_floor = true;
   return p;
 }
 
@@ -100,6 +102,11 @@ std::string span_sentence(const Study& study) {
          "; " + reference_words(study) + "." + below_sentence(study);
 }
 
+std::string drawn_sentences(const Figure& f) {
+  const bool zeros = std::ranges::any_of(f.panels, plot::has_floored_zeros);
+  return (zeros ? " Exact zeros are drawn at the bottom edge." : "") + plot::same_curves_sentence(f);
+}
+
 }  // namespace
 
 Figure work_precision_figure(const Study& study, const std::string& scene) {
@@ -125,6 +132,7 @@ Figure work_precision_figure(const Study& study, const std::string& scene) {
   }
   add_floor(study, time);
   f.panels = {std::move(time), std::move(solves), key_panel(study)};
+  f.caption += drawn_sentences(f);
   return f;
 }
 
@@ -142,7 +150,6 @@ Figure convergence_figure(const Study& study, const std::string& scene) {
   Panel position = log_panel("step (s)", "position error (m)");
   Panel constraint = log_panel("step (s)", "constraint error (relative)");
   Panel energy = log_panel("step (s)", "energy error (J)");
-  constraint.y.zeros_at_floor = energy.y.zeros_at_floor = true;
   for (std::size_t i = 0; i < study.curves.size(); ++i) {
     position.curves.push_back(curve_of(study, i, &MeasuredRun::step, &MeasuredRun::position_error));
     constraint.curves.push_back(
@@ -152,6 +159,7 @@ Figure convergence_figure(const Study& study, const std::string& scene) {
   add_floor(study, position);
   constraint.lines.push_back({std::numeric_limits<double>::epsilon(), true, "round-off", 7});
   f.panels = {std::move(position), std::move(constraint), std::move(energy), key_panel(study)};
+  f.caption += drawn_sentences(f);
   return f;
 }
 

@@ -13,6 +13,7 @@
 #include "core/text/utf8.hpp"
 #include "render/plot/contours.hpp"
 #include "render/plot/figures/run_facts.hpp"
+#include "render/plot/same_curves.hpp"
 #include "render/plot/ticks.hpp"
 
 namespace unfurl {
@@ -385,6 +386,7 @@ std::vector<Figure> sweep_figures(const SweepPlan& plan, const Sweep& sweep, con
       for (const Curve& c : f.panels[0].curves) drawn.insert(drawn.end(), c.y.begin(), c.y.end());
       f.caption += zeros_sentence(drawn);
     }
+    f.caption += plot::same_curves_sentence(f);
     figures.push_back(std::move(f));
   }
   return figures;

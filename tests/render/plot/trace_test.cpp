@@ -115,6 +115,10 @@ TEST_CASE("axis limits are usable whatever the data", "[limits]") {
   CHECK(limits({3e-16, 5e-13}, true).hi == Approx(1e-12).epsilon(1e-12));
   CHECK(limits({1e-16, 1e-13, 0}, true, true).lo ==
         Approx(1e-17).epsilon(1e-12));  // room for the floor below the data
+  // Where there is nothing but zeros, at zero, as a quantity that cannot be negative has it: no tick below
+  // it.
+  CHECK(limits({0, 0}, false).lo == Approx(-0.05).epsilon(0).margin(1e-12));
+  CHECK(limits({0, 0}, false).hi == Approx(1.05).epsilon(0).margin(1e-12));
   const Limits padded = limits({0, 10}, false);
   CHECK(padded.lo < 0);
   CHECK(padded.hi > 10);
