@@ -214,7 +214,7 @@ class SteppedScene {
     return goes_on_ = stepper_.step();
   }
   bool advance_to(double t) {
-    if (std::isnan(t)) throw py::value_error("a stepper advances to a time [s], not to NaN");
+    if (std::isnan(t)) throw StudyError("a stepper advances to a time [s], not to NaN");
     Asker asker;
     {
       const py::gil_scoped_release release;
@@ -277,7 +277,7 @@ class SteppedScene {
     return names;
   }
   void set_force(const py::object& key, const Vec3& force) {
-    if (!force.allFinite()) throw py::value_error("a force is three finite numbers [N]");
+    if (!force.allFinite()) throw StudyError("a force is three finite numbers [N]");
     const int of = node(key);
     const py::gil_scoped_release release;
     const std::lock_guard lock(*use_);

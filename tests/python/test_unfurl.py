@@ -82,7 +82,7 @@ def test_velocities_are_those_of_their_nodes():
     assert np.array_equal(masses(given).run().v[0], given)
     assert np.array_equal(masses(given[:, :2]).run().v[0], given * [1, 1, 0])
     for wrong in (given.T, given.ravel(), np.ones((4, 5)), np.ones((4, 1)), np.ones(4), given[:3], 1.0):
-        with pytest.raises(ValueError, match="velocities are rows of 2 or 3 components, one row a node \\(4\\); got the shape"):
+        with pytest.raises(unfurl.StructureError, match="velocities are rows of 2 or 3 components, one row a node \\(4\\); got the shape"):
             masses(wrong)
 
 
@@ -107,12 +107,18 @@ def test_errors_are_unfurls_own_sentences():
         unfurl.Scene("hoop6").sweep({"structure.fold_angle": [30, 40]}, ["deploy_tme"])
     with pytest.raises(KeyError, match="no node 'B9'"):
         unfurl.Scene("pendulum", set={"solver.end_time": 0.1}).run().x["B9"]
-    with pytest.raises(ValueError, match="a rod names node 7; there are 0 to 1"):
+    with pytest.raises(unfurl.StructureError, match="a rod names node 7; there are 0 to 1"):
         unfurl.Structure([[0, 0, 0], [1, 0, 0]], [[0, 7]])
     for fixed, said in (([5], "fixed names node 5; there are 0 to 1"), ([-1], "fixed names node -1"), ([0.0], "fixed are indices"),
                         ([True], "one True or False for each of 2 nodes")):
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(unfurl.StructureError, match=said):
             unfurl.Structure([[0, 0, 0], [1, 0, 0]], [[0, 1]], fixed=fixed)
+    for changed, said in (({"mass": [1, 2, 3]}, "mass is one number or one for each of 1 rods; got the shape \\(3,\\)"),
+                          ({"mass": "heavy"}, "mass are no array of numbers: could not convert"),
+                          ({"nodes": [[0, 0, 0], [1, 0]]}, "nodes are no array of numbers: "), ({"rods": [[0, 1], [0]]}, "rods are no array of numbers: "),
+                          ({"nodes": [0, 1]}, "nodes are rows of 2 or 3 coordinates"), ({"rods": [0, 1]}, "rods are rows of two indices")):
+        with pytest.raises(unfurl.StructureError, match=said):
+            unfurl.Structure(**{"nodes": [[0, 0, 0], [1, 0, 0]], "rods": [[0, 1]], **changed})
     held = [unfurl.Structure([[0, 0], [1, 0]], [[0, 1]], fixed=f, gravity=(0, -10, 0), set={"solver.end_time": 0.3}).run().x["n0"]
             for f in ([0], np.array([True, False]))]
     assert (held[0] == held[1]).all() and (held[0] == 0).all()
@@ -184,7 +190,7 @@ def test_forces_are_added_to_and_logged():
         stepper.force["P"] -= [-3, 4, 0]
         assert np.array_equal(stepper.force["P"], [6, 0, 0])
         stepper.force["P"] = [6, 8, 0]
-        with pytest.raises(ValueError, match="three finite numbers"):
+        with pytest.raises(unfurl.StudyError, match="three finite numbers"):
             stepper.force["P"] += np.nan
         assert stepper.step() and np.abs(stepper.v[0] - [0.8, 0.8, 0]).max() < 1e-14
 
@@ -219,7 +225,7 @@ def test_forces_are_set_between_steps():
         for key, error in ((None, TypeError), (1.5, TypeError), (b"P", TypeError), (-1, IndexError), (1, IndexError), (10**30, IndexError)):
             with pytest.raises(error):
                 stepper.force[key]
-        with pytest.raises(ValueError, match="advances to a time"):
+        with pytest.raises(unfurl.StudyError, match="advances to a time"):
             stepper.advance_to(np.nan)
         with pytest.raises(KeyError):
             stepper.force["Q"] = [1, 0, 0]
@@ -595,6 +601,16 @@ def test_solve_refuses_what_the_program_refuses():
     for between in ((80, 70), (80, 80), (0, 0), (70, float("nan"))):
         with pytest.raises(unfurl.StudyError, match="between is \\(low, high\\) with low < high; got "):
             ring.solve("structure.fold_angle", deploy_time=4.92, between=between)
+
+
+def test_what_never_deploys_is_infinite_as_in_the_table(tmp_path):
+    # Drawn in, the ring moves away from its deployed pose. JSON has no infinity.
+    ring = unfurl.Scene("hoop6_sector", set={"solver.end_time": 1.0})
+    table = ring.sweep({"structure.hinge_force": [-10, -20]}, ["deploy_time"], out=tmp_path)
+    assert np.isinf(table["deploy_time_s"]).all()
+    assert [row["deploy_time_s"] for row in csv.DictReader(open(tmp_path / "sweep.csv"))] == ["inf", "inf"]
+    run = ring.run(set={"structure.hinge_force": -10})
+    assert run.measure("deploy_time") == np.inf and run.summary["measures"]["deploy_time_s"] is None
 
 
 def test_a_stepper_says_what_it_does_not_do():

@@ -299,6 +299,13 @@ class Scene:
         return f"<scene {self.title!r}>"
 
 
+def _numbers(values: Any, what: str, dtype: Any = None) -> np.ndarray:
+    try:
+        return np.asarray(values, dtype=dtype)
+    except (TypeError, ValueError) as error:
+        raise StructureError(f"{what} are no array of numbers: {error}") from error
+
+
 def Structure(nodes, rods, fixed: Sequence[int] = (), mass: float | Sequence[float] = 1.0, velocities=None, gravity=(0.0, 0.0, 0.0),
               constraints: Sequence[Mapping[str, Any]] = (), set: Mapping[str, Any] | None = None) -> Scene:
     """A scene of rods between points: nodes (n, 3) or (n, 2), rods (m, 2) of indices from 0, mass of each rod [kg].
@@ -308,29 +315,32 @@ def Structure(nodes, rods, fixed: Sequence[int] = (), mass: float | Sequence[flo
     Nodes are called n0, n1, ...; `constraints` are entries as in a scene, {"kind": "collinear", "nodes": ["n0", "n1", "n2"]};
     further keys, forces too, by `set`. Nodes of two coordinates stay in their plane.
     """
-    points = np.asarray(nodes, dtype=float)
+    points = _numbers(nodes, "nodes", float)
     if points.ndim != 2 or points.shape[1] not in (2, 3):
-        raise ValueError(f"nodes are rows of 2 or 3 coordinates; got the shape {points.shape}")
-    ends = np.asarray(rods)
+        raise StructureError(f"nodes are rows of 2 or 3 coordinates; got the shape {points.shape}")
+    ends = _numbers(rods, "rods")
     if ends.ndim != 2 or ends.shape[1] != 2 or not np.issubdtype(ends.dtype, np.integer):
-        raise ValueError(f"rods are rows of two indices of nodes; got the shape {ends.shape}, type {ends.dtype}")
+        raise StructureError(f"rods are rows of two indices of nodes; got the shape {ends.shape}, type {ends.dtype}")
     if ends.size and (ends.min() < 0 or ends.max() >= len(points)):
-        raise ValueError(f"a rod names node {ends.max() if ends.max() >= len(points) else ends.min()}; there are 0 to {len(points) - 1}")
-    held = np.asarray(fixed)
+        raise StructureError(f"a rod names node {ends.max() if ends.max() >= len(points) else ends.min()}; there are 0 to {len(points) - 1}")
+    held = _numbers(fixed, "fixed")
     if held.dtype == bool:
         if held.shape != (len(points),):
-            raise ValueError(f"fixed has one True or False for each of {len(points)} nodes; got the shape {held.shape}")
+            raise StructureError(f"fixed has one True or False for each of {len(points)} nodes; got the shape {held.shape}")
         held = np.flatnonzero(held)
     if held.size and (held.ndim != 1 or not np.issubdtype(held.dtype, np.integer)):
-        raise ValueError(f"fixed are indices of nodes; got the shape {held.shape}, type {held.dtype}")
+        raise StructureError(f"fixed are indices of nodes; got the shape {held.shape}, type {held.dtype}")
     if held.size and (held.min() < 0 or held.max() >= len(points)):
-        raise ValueError(f"fixed names node {held.max() if held.max() >= len(points) else held.min()}; there are 0 to {len(points) - 1}")
+        raise StructureError(f"fixed names node {held.max() if held.max() >= len(points) else held.min()}; there are 0 to {len(points) - 1}")
     flat = points.shape[1] == 2
     points = np.column_stack([points, np.zeros(len(points))]) if flat else points
-    speeds = None if velocities is None else np.asarray(velocities, dtype=float)
+    speeds = None if velocities is None else _numbers(velocities, "velocities", float)
     if speeds is not None and speeds.shape not in ((len(points), 2), (len(points), 3)):
-        raise ValueError(f"velocities are rows of 2 or 3 components, one row a node ({len(points)}); got the shape {speeds.shape}")
-    masses = np.broadcast_to(np.asarray(mass, dtype=float), len(ends))
+        raise StructureError(f"velocities are rows of 2 or 3 components, one row a node ({len(points)}); got the shape {speeds.shape}")
+    masses = _numbers(mass, "mass", float)
+    if masses.shape not in ((), (1,), (len(ends),)):
+        raise StructureError(f"mass is one number or one for each of {len(ends)} rods; got the shape {masses.shape}")
+    masses = np.broadcast_to(masses, len(ends))
     table = {"kind": "custom",
              "nodes": [{"name": f"n{i}", "position": p.tolist(), **({} if speeds is None else {"velocity": [*speeds[i], 0.0][:3]})} for i, p in enumerate(points)],
              "rods": [{"nodes": [f"n{a}", f"n{b}"], "mass": float(m)} for (a, b), m in zip(ends, masses)],
