@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
@@ -117,10 +119,13 @@ void export_vtk(const ExportJob& job) {
   std::string collection =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
       "byte_order=\"LittleEndian\">\n<Collection>\n";
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+  const auto name_of = [&](std::size_t i) {
     char suffix[32];
     std::snprintf(suffix, sizeof suffix, "_%06zu.vtu", i);
-    const std::string name = std::string(job.name) + suffix;
+    return std::string(job.name) + suffix;
+  };
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const std::string name = name_of(i);
     write_file_atomically(folder / name, grid(job, cells, i), Flush::later);
     collection += "<DataSet timestep=\"" + number(trajectory.time(i)) + "\" part=\"0\" file=\"" +
                   xml_text(name) + "\"/>\n";
@@ -128,6 +133,9 @@ void export_vtk(const ExportJob& job) {
   flush_files(folder);
   write_file_atomically(folder / (std::string(job.name) + ".pvd"),
                         collection + "</Collection>\n</VTKFile>\n");
+  // Of a longer run that was here before; what cannot be removed stays.
+  std::error_code error;
+  for (std::size_t i = trajectory.size(); std::filesystem::remove(folder / name_of(i), error);) ++i;
 }
 
 }  // namespace unfurl

@@ -99,6 +99,21 @@ TEST_CASE("a VTU of each state and their times in the PVD") {
   CHECK(vtu.find("<DataArray type=\"UInt8\" Name=\"axial_force_unique\"") != std::string::npos);
 }
 
+TEST_CASE("a VTK export leaves no states of a longer run that was there before") {
+  const Exported e("vtk");
+  const Simulation shorter = simulate(make_model(double_pendulum()), dvm_options(3, 0.05, 0.5));
+  const Diagnostics diagnostics = diagnose(shorter);
+  for (const char* kept : {"swinging_000012.vtu", "swing_12.vtu", "notes.txt"})
+    std::ofstream(e.directory / "vtk" / kept) << "mine";
+  find_export_format("vtk")->write({shorter, diagnostics, e.directory, "swing", 0.1, 2.0});
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(e.directory / "vtk")) names.insert(entry.path().filename());
+  CHECK(names.contains("swing_000010.vtu"));
+  CHECK_FALSE(names.contains("swing_000011.vtu"));
+  CHECK_FALSE(names.contains("swing_000020.vtu"));
+  CHECK(names.size() == 11 + 1 + 3);  // states, their list, and what is nobody's of ours
+}
+
 TEST_CASE("NPY arrays hold the trajectory in C order") {
   const Exported e("npy");
   const std::string file = e.text("npy/positions_m.npy");
