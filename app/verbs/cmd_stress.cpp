@@ -68,7 +68,7 @@ int cmd_stress(const Arguments& arguments) {
   explain(plan, stress, report);
   report.heading("Atlas");
   for (const Figure& figure : atlas_figures(plan, stress, scene.title))
-    report.picture(session.write(figure), figure.title);
+    report.picture(session.write(figure), as_plain(figure.title));
   if (!stress.long_runs.empty()) {
     add_long_runs(stress, report);
     report.picture(session.write(long_run_figure(stress, scene.title)), "Errors over very many steps.");

@@ -38,7 +38,7 @@ Report study_report(const Study& study, const Scene& scene, const std::vector<st
   report.paragraph("**" + cheapest_sentence(study) + "**");
   report.paragraph("Errors are the largest distance of a node from the reference at " +
                    std::string("equally spaced times up to ") + short_number(study.end, 6) + " s" +
-                   (study.before.empty() ? "" : ", shortly before " + study.before) +
+                   (study.before.empty() ? "" : ", shortly before " + as_plain(study.before)) +
                    ". The reference: " + study.reference + "; " + reference_words(study) +
                    ". CPU times are medians of runs that had the machine's "
                    "core to themselves; smallest and largest are in `study.csv`.");
