@@ -50,6 +50,7 @@ Image draw_banner(const FrameBuilder::Banner& banner, const FrameStyle& style, i
     const auto left = static_cast<float>(k * style.width);
     for (TextLabel& label : list.labels) label.x -= left;
     for (OverlayArea& area : list.areas) area.x0 -= left, area.x1 -= left;
+    for (OverlayLine& line : list.lines) line.x0 -= left, line.x1 -= left;
     images.push_back(
         scaled_down(renderer.draw(list), style.width / supersample, banner.height / supersample));
   }

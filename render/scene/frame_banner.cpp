@@ -17,8 +17,10 @@ int FrameOverlay::add_banner(double t, bool title, bool legend, int width, DrawL
   FrameOverlay wide = *this;
   wide.on_banner_ = true;
   wide.width_ = static_cast<float>(width);
-  const std::size_t areas = list.areas.size(), labels = list.labels.size();
-  const auto cleared = [&] { list.areas.resize(areas), list.labels.resize(labels); };
+  const std::size_t areas = list.areas.size(), lines = list.lines.size(), labels = list.labels.size();
+  const auto cleared = [&] {
+    list.areas.resize(areas), list.lines.resize(lines), list.labels.resize(labels);
+  };
   Parts heading = wanted;
   heading.erase(Part::legend);
   wide.height_ = 1e6f;

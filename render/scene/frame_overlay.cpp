@@ -310,22 +310,25 @@ void FrameOverlay::add_status(double t, const VectorXd& whole, Boxes& taken, Dra
   }
 }
 
-// A square in the colour, framed in ink: a colour as light as the ground has an edge on it.
-void FrameOverlay::add_swatch(DrawList& list, float x, float y, const Color& color) const {
+// Of a cable or a net a line. Else a square in the colour, framed in ink: a colour as light as the ground has
+// an edge on it.
+void FrameOverlay::add_sample(DrawList& list, float x, float y, const LegendEntry& entry) const {
   const float side = std::round(0.66f * small_), frame = std::max(1.0f, std::round(0.06f * small_));
+  if (const float middle = std::round(y + 0.5f * small_); entry.line > 0)
+    return list.lines.push_back({x, middle, x + side, middle, entry.line, entry.color});
   const float top = y + 0.5f * (small_ - side), inside = side - frame;
   list.areas.push_back({x, top, x + side, top + side, look_.ink});
-  list.areas.push_back({x + frame, top + frame, x + inside, top + inside, color});
+  list.areas.push_back({x + frame, top + frame, x + inside, top + inside, entry.color});
 }
 
 std::vector<FrameOverlay::LegendEntry> FrameOverlay::legend_entries(double t, const DrawList& list) const {
   std::vector<LegendEntry> legend;
-  const auto add = [&](bool arrow, const std::string& name, const Color& color) {
+  const auto add = [&](bool arrow, const std::string& name, const Color& color, float line = 0) {
     const double em = static_cast<double>(small_) / plot::line_height;
     const std::string text =
         plot::shorten_text(name, em, static_cast<double>(width_ - 2 * edge_ - 2 * small_));
     const auto wide = static_cast<float>(plot::text_width(text, em));
-    legend.push_back({arrow, text, color, wide + 0.95f * small_});
+    legend.push_back({arrow, text, color, wide + 0.95f * small_, line});
   };
   if (!field_ && looks_.groups.size() > 1)
     for (std::size_t i = 0; i < looks_.groups.size(); ++i) add(false, looks_.groups[i], look_.group(i));
@@ -336,7 +339,8 @@ std::vector<FrameOverlay::LegendEntry> FrameOverlay::legend_entries(double t, co
   std::set<std::string> lines;
   for (const ShownLine& line : trajectory_.structure().lines)
     if (lines.insert(line.group).second)
-      add(false, line.group, look_.line_color(line.group, field_ && field_->diverging));
+      add(false, line.group, look_.line_color(line.group, field_ && field_->diverging),
+          line.group == "net" ? fine_ : std::max(2 * fine_, std::round(0.12f * small_)));
   if (!list.arrows.empty()) add(true, "load", list.arrows.front().color);
   if (!style_.trails.empty()) add(false, "trail", trail_color(look_, looks_));
   return legend;
@@ -391,7 +395,7 @@ void FrameOverlay::add_legend(double t, Boxes& taken, DrawList& list) const {
       if (entry.arrow)
         list.labels.push_back({left, row.y, small_, entry.color, "\u2192", 0});
       else if (entry.color.a > 0)
-        add_swatch(list, left, row.y, entry.color);
+        add_sample(list, left, row.y, entry);
       right = left - 1.0f * small_;
     }
   }

@@ -38,7 +38,8 @@ class FrameOverlay {
     bool arrow;
     std::string name;
     Color color;
-    float width;  // with its sign [pixels]
+    float width;     // with its sign [pixels]
+    float line = 0;  // of what is drawn as a line, its width [pixels]
   };
   struct LegendRow {
     float y;
@@ -80,7 +81,7 @@ class FrameOverlay {
   // The least important part that is in the way of another, or has no room in the picture.
   std::optional<Part> in_the_way(const std::vector<Piece>& pieces) const;
   VectorXd solved(const VectorXd& whole) const;
-  void add_swatch(DrawList& list, float x, float y, const Color& color) const;
+  void add_sample(DrawList& list, float x, float y, const LegendEntry& entry) const;
   // A text on ground as quiet as the background: what is behind shines through a little.
   TextLabel quiet(const DrawList& list, TextLabel label) const;
   void prepare_inset();

@@ -149,6 +149,23 @@ TEST_CASE("EGL draws the same pixels as OSMesa, and steps in where that is missi
 }
 
 // Where panels meet, what is behind the poses goes on: below what is written it differs from row to row only.
+TEST_CASE("the legend of a poster has the sample of a cable in the last panel") {
+  const ScratchDirectory dir;
+  const std::string file = dir / "poster.png";
+  REQUIRE(run_program({"poster", "mesh_reflector", "-o", file, "--poses", "3", "--size", "960x540", "--set",
+                       "solver.end_time=0.02", "--quiet"})
+              .code == 0);
+  const Image poster = read_png(file);
+  REQUIRE(poster.width == 960);
+  int red = 0;
+  for (int y = 0; y < poster.height - 270; ++y)  // the strip above the poses
+    for (int x = 640; x < poster.width; ++x) {
+      const auto* pixel = poster.rgba.data() + 4 * (y * poster.width + x);
+      red += pixel[0] > 150 && pixel[1] < 60 && pixel[2] > 30 && pixel[2] < 90;
+    }
+  CHECK(red >= 6);  // one row of eight pixels, less its ends
+}
+
 TEST_CASE("a poster has no Earth whose limb would break where two poses meet") {
   const ScratchDirectory dir;
   const std::string file = dir / "poster.png";

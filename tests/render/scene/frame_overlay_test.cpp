@@ -189,6 +189,18 @@ TEST_CASE("cables and nets are named, and no cable looks pulled or loaded beside
       };
       CHECK(drawn(cable));
       CHECK(drawn(look.line_color("net", forces)));
+      // In the legend a line each, as in the picture a net's is the thinner one, before the name.
+      const auto sample = [&](const char* name) {
+        const TextLabel& word = *label(list, name);
+        const auto found = std::ranges::find_if(list.lines, [&](const OverlayLine& line) {
+          return line.x0 < word.x && line.x1 > word.x - word.height && line.y0 == line.y1 &&
+                 line.y0 > word.y && line.y0 < word.y + word.height &&
+                 distance(line.color, look.line_color(name, forces)) == 0;
+        });
+        return found == list.lines.end() ? 0.0f : found->width;
+      };
+      CHECK(sample("net") >= 1);
+      CHECK(sample("cable") > sample("net"));
       if (!forces) continue;
       for (const Color& other : {diverging_color(-1), diverging_color(1), look.load_color(true)})
         CHECK(distance(cable, other) >= told_apart(look));
