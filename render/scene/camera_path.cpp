@@ -222,7 +222,10 @@ CameraPath::CameraPath(std::vector<std::vector<Vec3>> poses, std::vector<double>
       times_(std::move(times)),
       bounds_(bounds),
       framing_(framing),
-      start_(first_angles(options, bounds)),
+      start_(options.camera_keys.empty()
+                 ? first_angles(options, bounds)
+                 : ViewAngles{options.camera_keys.front().azimuth * radians_per_degree,
+                              options.camera_keys.front().elevation * radians_per_degree}),
       orbit_(options.orbit * radians_per_degree),
       turntable_(options.turntable > 0),
       follow_(options.follow),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <tuple>
 
@@ -12,6 +13,7 @@
 #include "core/simulate/simulation.hpp"
 #include "render/scene/frame_builder.hpp"
 #include "render/scene/view.hpp"
+#include "tests/support/models.hpp"
 
 using namespace unfurl;
 
@@ -135,6 +137,17 @@ TEST_CASE("camera keys are passed at their times") {
   CHECK((frames.build(1.5).camera.eye - center).norm() == Approx(plain / 2).epsilon(1e-4));
   CHECK((frames.build(0.0).camera.eye - frames.build(0.5).camera.eye).norm() <
         1e-5f);  // rests before the first
+  // From where a camera without keys would look does nothing, neither to the distance.
+  const Simulation pendulum =
+      simulate(testing::make_model(testing::double_pendulum()), testing::dvm_options(3, 0.02, 2));
+  std::optional<Vec3f> eye;
+  for (const char* camera : {"auto", "iso", "front", "top"}) {
+    CAPTURE(camera);
+    options.camera = camera;
+    const Vec3f here = builder(pendulum, options).build(1.0).camera.eye;
+    CHECK(here == eye.value_or(here));
+    eye = here;
+  }
 }
 
 // Equal keys stay equal between their times, and no key is overshot on the way to one that is like it.
