@@ -22,6 +22,7 @@
 #include "core/study/table.hpp"
 #include "core/text/nearest_name.hpp"
 #include "core/text/version.hpp"
+#include "render/plot/lacking_letters.hpp"
 
 namespace unfurl {
 
@@ -278,6 +279,9 @@ int dispatch(const std::vector<std::string>& words) {
   }
   const WrittenReport report(a.view.picture.empty() ? a.output : a.view.picture);
   const int code = command.run(a);
+  if (const std::string letters = plot::lacking_letters(); !letters.empty())
+    std::cerr << "unfurl: warning: DejaVu Sans has no " << letters
+              << ": pictures and figures show signs in their place; figures as SVG have them\n";
   if (!a.quiet) std::cerr << report.text();
   return code;
 }

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "core/text/utf8.hpp"
+#include "render/plot/lacking_letters.hpp"
 #include "render/plot/text_metrics.hpp"
 
 namespace unfurl::plot {
@@ -127,10 +128,12 @@ void PdfCanvas::text(Point at, std::string_view text, const TextStyle& style) {
   std::string shown;
   double width = 0;
   for (std::size_t i = 0, last = fonts_.size(); i < text.size();) {
+    const std::size_t first = i;
     const char32_t c = next_code_point(text, i);
     const std::size_t k = font_of(c);
     const TrueType& file = fonts_[k].font.file;
     const int glyph = file.glyph(c);
+    if (glyph == 0) note_lacking(text.substr(first, i - first));
     fonts_[k].glyphs.emplace(glyph, glyph == 0 ? U'\uFFFD' : c);
     if (k != last) {
       shown += shown.empty() ? "" : "> Tj ";

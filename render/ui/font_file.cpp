@@ -7,8 +7,11 @@
 #include <iterator>
 #include <map>
 #include <mutex>
+#include <optional>
+#include <stdexcept>
 #include <vector>
 
+#include "render/plot/true_type.hpp"
 #include "render/ui/embedded_fonts.hpp"
 
 namespace unfurl {
@@ -65,6 +68,17 @@ std::string_view font_bytes(const std::string& file) {
   if (bytes.empty())
     if (const std::string place = font_below(file); !place.empty()) bytes = content(place);
   return bytes;
+}
+
+bool own_font_has(char32_t c) {
+  static const std::optional<plot::TrueType> font = []() -> std::optional<plot::TrueType> {
+    try {
+      return plot::TrueType{std::string(own_font())};
+    } catch (const std::runtime_error&) {  // none, or no such font
+      return std::nullopt;
+    }
+  }();
+  return !font || font->glyph(c) != 0;
 }
 
 std::string_view own_font(bool bold) {

@@ -15,5 +15,6 @@ std::string_view font_bytes(const std::string& file);
 
 // The program's typeface: DejaVu Sans. Empty where it was built without and it is nowhere.
 std::string_view own_font(bool bold = false);
+bool own_font_has(char32_t c);  // true where there is no such font to ask
 
 }  // namespace unfurl

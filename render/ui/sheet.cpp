@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/text/utf8.hpp"
+#include "render/plot/lacking_letters.hpp"
+#include "render/ui/font_file.hpp"
 #include "render/ui/fonts.hpp"
 
 namespace unfurl {
@@ -49,8 +51,11 @@ ImFont* Sheet::font_of(float pixels, bool bold, const plot::Typeface& face) {
 void Sheet::need(std::string_view text) {
   std::vector<ImWchar> ranges;
   for (std::size_t at = 0; at < text.size();) {
+    const std::size_t first = at;
     const char32_t c = next_code_point(text, at);
-    if (c < 0x20 || c > 0xFFFF || is_common(c) || !needed_.insert(c).second) continue;
+    if (c < 0x20 || is_common(c) || !needed_.insert(c).second) continue;
+    if (c > 0xFFFF || !own_font_has(c)) plot::note_lacking(text.substr(first, at - first));
+    if (c > 0xFFFF) continue;
     ranges.insert(ranges.end(), 2, static_cast<ImWchar>(c));
   }
   if (ranges.empty()) return;

@@ -46,4 +46,32 @@ TEST_CASE("every verb that writes says nothing with quiet, and writes the same")
   CHECK(run_program({"modes", "ladder", "--quiet"}).out == "");
 }
 
+TEST_CASE("characters that the program's font has not are named once") {
+  const ScratchDirectory dir;
+  const auto titled = [&](const char* title, const char* file) {
+    Words words = {"poster",
+                   "pendulum",
+                   "--poses",
+                   "2",
+                   "--size",
+                   "480x270",
+                   "--set",
+                   "solver.end_time=0.1",
+                   "--quiet",
+                   "--set",
+                   std::string("title=") + title,
+                   "-o",
+                   dir / file};
+    return run_program(words);
+  };
+  // Of Latin, Greek and Cyrillic it has all.
+  CHECK(titled("\"Ring \u0142\u03b1\u0436\"", "a.png").err == "");
+  const ProgramResult r = titled("\"Ring \u6e2c\u8a66\u6e2c \U0001F6F0\"", "b.png");
+  CHECK(r.code == 0);
+  CHECK(r.err ==
+        "unfurl: warning: DejaVu Sans has no \u6e2c, \u8a66, \U0001F6F0: pictures and figures show signs in "
+        "their "
+        "place; figures as SVG have them\n");
+}
+
 }  // namespace unfurl::quiet_test
