@@ -173,9 +173,18 @@ void ImguiHost::judge_clicks(double seconds) {
 
 // ImGui keeps the steps back of the field that was typed into last, for when that is entered again. By then
 // its text may be another (undone, of another scene, emptied), and they would be taken out of its bounds.
-void ImguiHost::forget_left_field() const {
+void ImguiHost::forget_left_field() {
   ImGuiInputTextState& typed = context_->InputTextState;
+  if (typed.ID != 0) typed_ = typed.ID;
   if (typed.ID != context_->ActiveId) typed.ID = 0;
+}
+
+// Behind Enter no field is active, and ImGui would begin with the first one: from that which was left, where
+// it still has the keyboard.
+void ImguiHost::tab_from_left_field() const {
+  ImGuiContext& g = *context_;
+  const bool first = (g.NavMoveFlags & ImGuiNavMoveFlags_Tabbing) != 0 && g.NavTabbingDir == 0;
+  if (first && g.NavId != 0 && g.NavId == typed_ && !g.NavDisableHighlight) g.NavTabbingDir = 1;
 }
 
 void ImguiHost::leave_field() const {
@@ -191,6 +200,7 @@ void ImguiHost::frame(int width, int height, double seconds, const std::function
   if (io.KeysDown[static_cast<int>(Key::enter)]) io.NavInputs[ImGuiNavInput_Activate] = 1;
   ImGui::NewFrame();
   forget_left_field();
+  tab_from_left_field();
   std::exception_ptr thrown;
   try {
     ui_.typed.drawn = false;

@@ -48,7 +48,8 @@ class ImguiHost {
  private:
   void make_fonts();
   void judge_clicks(double seconds);
-  void forget_left_field() const;
+  void forget_left_field();
+  void tab_from_left_field() const;
 
   struct End {
     void operator()(ImGuiContext* context) const { ImGui::DestroyContext(context); }
@@ -59,6 +60,7 @@ class ImguiHost {
   std::string copied_;
   std::map<int, ImFont*> figure_fonts_;  // by size in 1/64 pixels
   Ui ui_;
+  ImGuiID typed_ = 0;                              // the field that was typed into last
   int pane_ = -1;                                  // that was given the keyboard last
   double pressed_[3] = {-1, -1, -1}, since_ = -1;  // when buttons were; the last press after the one before
   double frame_seconds_ = 0;                       // of the last frame

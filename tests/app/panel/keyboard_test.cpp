@@ -135,6 +135,40 @@ TEST_CASE("what is typed into a number is the whole of it, as in a scene") {
   CHECK(driver.state().message.find("3.5 is no whole number") != std::string::npos);
 }
 
+TEST_CASE("Tab behind Enter goes to the next field, with Shift to the one before") {
+  PanelOptions options = PanelDriver::small();
+  options.measure_errors = false;
+  PanelDriver driver(options, "pendulum");
+  const auto typed = [&](const char* text) {
+    driver.type(text);
+    driver.frame();
+    driver.key(Key::enter);
+    driver.settle();
+  };
+  const auto tab = [&](bool shift = false) {
+    driver.key(Key::tab, false, shift);
+    driver.frame();
+  };
+  tab(), tab();  // the title, and what follows it
+  typed("1.5");
+  tab();
+  typed("2.5");
+  tab();
+  typed("3.5");
+  const auto& edits = driver.state().history.now().edits;
+  const auto edited = [&](const char* key) {
+    const auto found = edits.find(key);
+    return found == edits.end() ? ParamValue(false) : found->second;
+  };
+  CHECK_FALSE(edits.contains("title"));
+  CHECK(edited("structure.length") == ParamValue(1.5));
+  CHECK(edited("structure.rod_mass") == ParamValue(2.5));
+  CHECK(edited("structure.bob_mass") == ParamValue(3.5));
+  tab(true);
+  typed("4.5");
+  CHECK(edited("structure.rod_mass") == ParamValue(4.5));
+}
+
 TEST_CASE("every action has a name, and no two have one key") {
   for (const Action& a : actions()) {
     CHECK_FALSE(a.help.empty());
