@@ -61,7 +61,7 @@ Image draw_banner(const FrameBuilder::Banner& banner, const FrameStyle& style, i
 Image draw_poses(const FrameBuilder& builder, const FrameStyle& style, bool key, const Trajectory& run,
                  std::size_t poses, int supersample, GlContext& context) {
   FrameStyle plain = style;
-  plain.options.scale_bar = plain.options.axes = false;
+  plain.measures = false;
   const bool differs = style.options.scale_bar || style.options.axes;
   std::optional<FrameBuilder> others;
   if (differs && poses > 1) others.emplace(run, plain);

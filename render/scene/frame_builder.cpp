@@ -122,15 +122,19 @@ double FrameBuilder::prepare_camera(PosedMoments moments) {
   bound(poses, times);
   Framing framing;
   framing.around = thickest + (style_.loads && !s.load_copies.empty() ? 0.5 * looks_.arrow_length : 0.0);
-  if (look_->dimensions || style_.options.dimensions)
+  const bool dimensions = look_->dimensions || style_.options.dimensions;
+  if (dimensions)
     for (auto& pose : poses)
       add_dimension_ends(pose, 1.15 * dimension_gap * drawn_radius(shown_radius_, thickest));
   framing.aspect = static_cast<double>(style_.width) / style_.height;
-  if (!style_.options.inset.empty() && style_.diagnostics) framing.margins.right = 0.27;
-  // Two lines at the left may stand beside what is in the middle; more, or of small pictures, may not.
-  constexpr double beside = 0.16, most = 0.4;
+  if (const double inset = overlay_->inset_share(); inset > 0)
+    framing.margins.right = std::clamp(0.96 * inset, 0.27, 0.45);  // the least room is that of large pictures
+  // Two lines at the left may stand beside what is in the middle; more, or of small pictures, may not, nor
+  // beside dimension lines.
+  const double beside = dimensions ? framing.margins.top : 0.16;
   if (const double heading = overlay_->heading_bottom(); heading > beside)
-    framing.margins.top = std::min(heading, most);
+    framing.margins.top = std::min(heading, 0.4);
+  framing.margins.bottom = std::clamp(overlay_->footing_top(), framing.margins.bottom, 0.3);
   const auto all = [&](const std::function<void(const Vec3&)>& visit) {
     for (const auto& pose : poses)
       for (const Vec3& p : pose) visit(p);

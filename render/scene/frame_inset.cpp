@@ -24,6 +24,12 @@ bool of_rods(std::string_view column) {
 
 }  // namespace
 
+constexpr float inset_width = 330;  // in units
+
+double FrameOverlay::inset_share() const {
+  return inset_ ? static_cast<double>((inset_width * unit_ + edge_) / width_) : 0;
+}
+
 void FrameOverlay::prepare_inset() {
   const std::string& column = style_.options.inset;
   if (column.empty() || !style_.diagnostics) return;
@@ -48,7 +54,7 @@ void FrameOverlay::prepare_inset() {
 
 void FrameOverlay::add_inset(double t, DrawList& list) const {
   if (!inset_) return;
-  const float wide = std::round(330 * unit_), high = std::round(200 * unit_);
+  const float wide = std::round(inset_width * unit_), high = std::round(200 * unit_);
   const double pixels_per_point = 1.75 * static_cast<double>(unit_);
   auto figure = std::make_shared<Figure>(*inset_);
   figure->width_mm = static_cast<double>(wide) / pixels_per_point / plot::points_per_mm;

@@ -46,6 +46,22 @@ Color clear_backing(const Look& look) {
 
 }  // namespace
 
+// A scale bar stands beside the time, or above it where there is no room.
+double FrameOverlay::footing_top() const {
+  const RenderOptions& options = style_.options;
+  float up = options.time ? edge_ + small_ : 0;
+  if (options.scale_bar) {
+    const auto wide = [&](const std::string& text) {
+      return static_cast<float>(plot::text_width(text, static_cast<double>(small_) / plot::line_height));
+    };
+    const float bar = std::max(0.16f * width_, wide("0.5 m in the middle"));
+    const bool beside =
+        !options.time || edge_ + wide("t = 10.00 s    deployed 100 %") < 0.5f * (width_ - bar);
+    up = std::max(up, edge_ + 1.35f * small_ + (beside ? 0 : small_ + 12 * unit_));
+  }
+  return static_cast<double>(up / height_);
+}
+
 // As long as it is in the middle of what the camera shows; in perspective what is nearer is larger, which it
 // says.
 void FrameOverlay::add_scale_bar(Boxes& taken, DrawList& list) const {

@@ -100,8 +100,8 @@ FrameOverlay::Parts FrameOverlay::wanted() const {
   want(options.legend, Part::thickness);
   want(options.method && style_.run, Part::method);
   want(options.errors && style_.diagnostics, Part::errors);
-  want(options.scale_bar, Part::scale_bar);
-  want(options.axes, Part::axes);
+  want(options.scale_bar && style_.measures, Part::scale_bar);
+  want(options.axes && style_.measures, Part::axes);
   return parts;
 }
 

@@ -23,6 +23,9 @@ class FrameOverlay {
   void add(double t, const VectorXd& whole, DrawList& list) const;
   // Where what is written at the top ends, as a share of the picture's height; 0: nothing is.
   double heading_bottom() const;
+  // As much of it that time and scale bar take at the bottom, and of its width an inset at the right.
+  double footing_top() const;
+  double inset_share() const;
   void add_key(double t, DrawList& list) const;  // what sizes, colours and signs of a picture stand for
   // Title, thickness and legend, as wanted, on a strip that is as wide as given and as high as they need;
   // returns that height, 0 where nothing is written [pixels].

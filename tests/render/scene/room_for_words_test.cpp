@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is written over a small picture leaves the structure its place.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/scene/build.hpp"
+#include "core/scene/library.hpp"
+#include "core/scene/reader.hpp"
+#include "render/scene/film_style.hpp"
+#include "render/scene/view.hpp"
+
+using namespace unfurl;
+
+namespace room_for_words_test {
+
+namespace {
+
+struct Film {
+  Scene scene;
+  Simulation run = simulate(build_model(scene), scene.solver);
+  Diagnostics diagnostics = diagnose(run);
+
+  explicit Film(Scene read) : scene(std::move(read)) {}
+  Film(const char* name, const std::vector<std::string>& changes)
+      : Film(read_scene_file(find_scene(name), changes)) {}
+  FrameStyle style(int width, int height) const {
+    FrameStyle out = film_style(scene, run, diagnostics);
+    out.width = width, out.height = height;
+    return out;
+  }
+};
+
+// The largest depth [pixels] of a rod's end within a box of the picture.
+double deepest(const DrawList& list, int width, int height, float x0, float y0, float x1, float y1) {
+  float most = 0;
+  for (const Tube& tube : list.tubes)
+    for (const Vec3f& end : {tube.a, tube.b}) {
+      const Vec3f p = project(list.camera, width, height, end);
+      most = std::max(most, std::min({p.x() - x0, x1 - p.x(), p.y() - y0, y1 - p.y()}));
+    }
+  return static_cast<double>(most);
+}
+
+const TextLabel* ending(const DrawList& list, const std::string& end) {
+  const auto found =
+      std::ranges::find_if(list.labels, [&](const TextLabel& l) { return l.text.ends_with(end); });
+  return found == list.labels.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+// A frame of four rods as wide as a picture, seen from the front, reaches into every corner that is free.
+TEST_CASE("an inset of a small picture lies beside the structure") {
+  const Film film(read_scene_text(R"(
+structure.kind = 'custom'
+structure.nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', position = [1.6, 0, 0], fixed = true},
+                   {name = 'C', position = [1.6, 0, 0.9], fixed = true}, {name = 'D', position = [0, 0, 0.9], mass = 1.0}]
+structure.rods = [{nodes = ['A', 'B'], mass = 1.0}, {nodes = ['B', 'C'], mass = 1.0},
+                  {nodes = ['C', 'D'], mass = 1.0}, {nodes = ['D', 'A'], mass = 1.0}]
+solver.end_time = 0.1
+render.camera = 'front'
+render.inset = 'kinetic_energy_J'
+)",
+                                  "frame.toml"));
+  for (const auto& [width, height] : {std::pair{1280, 720}, {720, 405}, {640, 360}, {480, 270}, {440, 250}}) {
+    CAPTURE(width);
+    const DrawList list = FrameBuilder(film.run.trajectory, film.style(width, height)).build(0);
+    REQUIRE(list.inset.figure);
+    const Inset& in = list.inset;
+    CHECK(deepest(list, width, height, in.x, in.y, in.x + in.width, in.y + in.height) == 0);
+  }
+}
+
+TEST_CASE("a scale bar stands below the structure, in panels of posters too, which are all of one scale") {
+  const Film film("mesh_reflector", {"solver.end_time=0.2", "render.scale_bar=true", "render.title=false",
+                                     "render.legend=false"});
+  constexpr int width = 320, height = 270;
+  FrameStyle style = film.style(width, height);
+  const DrawList first = FrameBuilder(film.run.trajectory, style).build(0);
+  const TextLabel* words = ending(first, " m in the middle");
+  REQUIRE(words);
+  CHECK(deepest(first, width, height, 0, words->y, width, height) == 0);
+  style.measures = false;
+  const DrawList other = FrameBuilder(film.run.trajectory, style).build(0);
+  CHECK_FALSE(ending(other, " m in the middle"));
+  CHECK(other.camera.eye == first.camera.eye);
+}
+
+TEST_CASE("dimension lines begin below the headings") {
+  const Film film("scissor_mast", {"solver.step=0.05", "render.look=blueprint"});
+  for (const auto& [width, height] : {std::pair{1280, 720}, {640, 360}}) {
+    CAPTURE(width);
+    const FrameBuilder frames(film.run.trajectory, film.style(width, height));
+    for (double u = 0; u <= 1; u += 0.125) {
+      const DrawList list = frames.build(u * film.run.trajectory.end_time());
+      const TextLabel* heading = ending(list, " as thick");
+      if (!heading) heading = ending(list, film.scene.title);
+      REQUIRE(heading);
+      REQUIRE_FALSE(list.lines.empty());
+      for (const OverlayLine& line : list.lines)
+        CHECK(std::min(line.y0, line.y1) >= heading->y + heading->height);
+    }
+  }
+}
+
+}  // namespace room_for_words_test
