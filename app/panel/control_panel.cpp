@@ -33,7 +33,7 @@ ControlPanel::ControlPanel(GlContext& context, SceneDocument document, PanelOpti
       session_(std::move(document),
                {options_.at, options_.measure_errors, options_.wake, [this] { return picture_->read(); },
                 options_.moment, options_.replayed}),
-      view_(context) {
+      view_(context, options_.scale) {
   PanelState& now = state();
   now.dark = options_.settings.dark;
   now.left_open = options_.settings.left_open;

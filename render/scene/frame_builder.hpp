@@ -26,6 +26,7 @@ struct FrameStyle {
   std::string title;               // top left; empty: none
   bool labels = true;              // title, time, deployed fraction, legend and all else that is written
   bool loads = true;               // arrows
+  float words = 1;                 // times the least size of what is written
   bool measures = true;            // scale bar and axes of the options; false: their room is empty
   RenderOptions options = {};      // look, colours, overlays, camera; its size is not used
   // What colours by a quantity, errors, method and inset are read from; without them those are left out.

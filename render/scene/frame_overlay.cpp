@@ -78,7 +78,7 @@ FrameOverlay::FrameOverlay(const Trajectory& trajectory, const FrameStyle& style
       width_(static_cast<float>(style.width)),
       height_(static_cast<float>(style.height)),
       fine_(static_cast<float>(std::max(style.options.supersample, 1))),
-      unit_(std::max(0.55f * fine_, std::min(height_ / 720.0f, width_ / 1280.0f))),
+      unit_(std::max(0.55f * fine_ * style.words, std::min(height_ / 720.0f, width_ / 1280.0f))),
       edge_(30 * unit_),
       small_(fine_ * std::round(21 * unit_ / fine_)),
       large_(fine_ * std::round(28 * unit_ / fine_)) {

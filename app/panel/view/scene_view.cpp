@@ -99,6 +99,7 @@ void SceneView::rebuild(PanelState& state) {
   }
   style.width = width_;
   style.height = height_;
+  style.words = words_;
   style.loads = style.loads && options_.loads;
   if (builder_) style.origin = builder_->origin();  // the eye stays where it is
   builder_ = std::make_unique<FrameBuilder>(run_->simulation.trajectory, style);

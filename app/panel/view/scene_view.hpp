@@ -2,6 +2,7 @@
 // The 3-D view of a run: the film's own pictures, with a camera led by hand.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -13,7 +14,8 @@ namespace unfurl {
 
 class SceneView {
  public:
-  explicit SceneView(GlContext& context) : context_(context) {}
+  // `scale`: how many times as large as usual words shall be at least, as the window's own are.
+  SceneView(GlContext& context, float scale) : context_(context), words_(std::max(1.0f, scale)) {}
 
   // Before anything else of a frame. Cheap where nothing changed.
   void prepare(int width, int height, PanelState& state);
@@ -38,6 +40,7 @@ class SceneView {
   float radius() const { return list_.radius; }
   int width() const { return width_; }
   int height() const { return height_; }
+  const DrawList& film_picture() const { return list_; }  // what the film would draw, at its camera
   long paints() const { return paints_; }
 
  private:
@@ -53,6 +56,7 @@ class SceneView {
   DrawList decorated(const PanelState& state) const;
 
   GlContext& context_;
+  float words_;
   std::unique_ptr<Renderer> renderer_;
   std::shared_ptr<const LiveRun> run_, ghost_run_;
   std::unique_ptr<FrameBuilder> builder_, ghost_;

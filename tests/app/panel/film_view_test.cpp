@@ -79,4 +79,22 @@ TEST_CASE("the view of a moment is taken for all of a film whose camera moves") 
   CHECK(std::abs(driver.panel().framed().azimuth - last.azimuth) < 2e-3f);
 }
 
+// 1280 x 720 pixels and more have words as large as that anyway.
+TEST_CASE("words over the view grow with the window's own") {
+  PanelOptions options = PanelDriver::small();
+  options.measure_errors = false;
+  PanelDriver driver(options, "hoop6");
+  const auto context = make_offscreen_context();
+  const auto height = [&](float scale) {
+    SceneView view(*context, scale);
+    view.prepare(800, 450, driver.state());
+    for (const TextLabel& label : view.film_picture().labels)
+      if (label.text == "chord") return label.height;
+    return 0.0f;
+  };
+  CHECK(height(1) == 13);  // 21 pixels of 720, of 450
+  CHECK(height(0.5f) == 13);
+  CHECK(height(2) == 23);  // twice the least, 0.55 of 21
+}
+
 }  // namespace film_view_test
