@@ -14,7 +14,6 @@ class DiagnosisAhead {
   // All of it is kept and grows; `known` has forces and flow of every state that the run has by the time.
   // `run` is what the whole run has become by the time of diagnose().
   DiagnosisAhead(const Simulation& run, const KnownAhead& known);
-  ~DiagnosisAhead();
   DiagnosisAhead(const DiagnosisAhead&) = delete;
   DiagnosisAhead& operator=(const DiagnosisAhead&) = delete;
 
@@ -24,8 +23,7 @@ class DiagnosisAhead {
 
  private:
   friend Diagnostics diagnose(const Simulation&, const std::function<bool()>&, const KnownAhead&);
-  struct Table;
-  std::unique_ptr<Table> table_;
+  std::shared_ptr<void> table_;  // of states, as diagnose() knows it
 };
 
 }  // namespace unfurl

@@ -440,18 +440,13 @@ Diagnostics diagnosed(const Simulation& run, Look look, const ForceUniqueness* u
 
 }  // namespace
 
-struct DiagnosisAhead::Table : StateTable {
-  using StateTable::StateTable;
-};
-
 DiagnosisAhead::DiagnosisAhead(const Simulation& run, const KnownAhead& known) {
   if (!any_elastic(run.trajectory.structure()))
-    table_ = std::make_unique<Table>(run, Look::all, nullptr, known);
+    table_ = std::make_shared<StateTable>(run, Look::all, nullptr, known);
 }
-DiagnosisAhead::~DiagnosisAhead() = default;
 
 void DiagnosisAhead::judge(const std::function<bool()>& enough) {
-  if (table_) table_->fill_first(enough);
+  if (table_) static_cast<StateTable*>(table_.get())->fill_first(enough);
 }
 
 // Where moduli share the load, what is unique comes first.
@@ -465,8 +460,8 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
   if (any_elastic(run.trajectory.structure())) find_uniqueness();
   std::optional<StateTable> own;
   const bool begun = ahead.judged && ahead.judged->table_;
-  StateTable& table =
-      begun ? *ahead.judged->table_ : own.emplace(run, Look::all, uniqueness ? &*uniqueness : nullptr, ahead);
+  StateTable& table = begun ? *static_cast<StateTable*>(ahead.judged->table_.get())
+                            : own.emplace(run, Look::all, uniqueness ? &*uniqueness : nullptr, ahead);
   table.fill(cancelled);
   if (!uniqueness) find_uniqueness();
   return table.finish(uniqueness ? &*uniqueness : nullptr);
