@@ -158,6 +158,13 @@ std::optional<Receipt> receipt_of(const fs::path& file) {
   return receipt;
 }
 
+bool damaged_receipt(const fs::path& file) {
+  const std::string bytes = bytes_of(file);
+  const std::size_t half = note_begin.size() / 2;  // one of which one damage leaves as it was
+  return bytes.find(note_begin.substr(0, half)) != bytes.npos ||
+         bytes.find(note_begin.substr(half)) != bytes.npos;
+}
+
 bool as_written(const fs::path& file) {
   std::string bytes = bytes_of(file);
   return sealed(bytes, file.extension().string()) == bytes;

@@ -34,6 +34,8 @@ std::string command_in_words(const Receipt& receipt);
 std::string bytes_of(const std::filesystem::path& file);
 // Nothing where the file carries no receipt. Throws FileError where it cannot be read.
 std::optional<Receipt> receipt_of(const std::filesystem::path& file);
+// Whether a file in which there is no receipt has what is left of one.
+bool damaged_receipt(const std::filesystem::path& file);
 // Is every byte of a file with a receipt as it was written?
 bool as_written(const std::filesystem::path& file);
 

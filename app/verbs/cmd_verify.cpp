@@ -46,22 +46,21 @@ using Json = nlohmann::ordered_json;
 // A file that went where no list of results is: by the receipt in it.
 int verify_by_receipt(const fs::path& file, bool json) {
   const auto receipt = receipt_of(file);
-  if (!receipt)
+  if (!receipt && !damaged_receipt(file))
     throw FileError(
         file,
         "lies in no directory of results (none above it has a list of what unfurl wrote, .unfurl) "
         "and carries no receipt");
-  const bool same = as_written(file);
-  if (json)
-    std::cout << Json{{"as_written", same},
-                      {"files", 1},
-                      {"unfurl", receipt->version},
-                      {"command", command_in_words(*receipt)}}
-                     .dump(2)
-              << "\n";
+  const bool same = receipt && as_written(file);
+  if (json) {
+    Json said{{"as_written", same}, {"files", 1}};
+    if (receipt) said["unfurl"] = receipt->version, said["command"] = command_in_words(*receipt);
+    std::cout << said.dump(2) << "\n";
+  }
   if (!same) {
     if (!json) std::cout << "changed: " << file.string() << "\n";
-    std::cerr << "unfurl: the file is not as it was written\n";
+    std::cerr << "unfurl: the file is not as it was written"
+              << (receipt ? "\n" : ": its receipt is damaged\n");
     return exit_verification_failed;
   }
   if (!json)

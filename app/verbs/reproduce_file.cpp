@@ -115,7 +115,10 @@ std::string name_of_run(const std::vector<WrittenFiles::Verdict>& listed) {
 Receipt receipt_beside(const fs::path& file) {
   const std::string extension = file.extension().string();
   if (takes_note(extension) || extension == ".mp4")
-    throw FileError(file, "carries no receipt: it was not made by unfurl, or another program wrote it anew");
+    throw FileError(file,
+                    damaged_receipt(file)
+                        ? "its receipt is damaged: the file is not as it was written"
+                        : "carries no receipt: it was not made by unfurl, or another program wrote it anew");
   const std::string none = "carries no receipt, as files of its kind do not, and ";
   std::error_code error;
   const fs::path absolute = fs::absolute(file, error).lexically_normal();

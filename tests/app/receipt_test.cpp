@@ -57,6 +57,18 @@ TEST_CASE("a file of every format carries its receipt, and is made again from it
     bytes[bytes.size() / 3] = static_cast<char>(bytes[bytes.size() / 3] ^ 1);
     dir.write(fs::path(copy).filename().string(), bytes);
     CHECK(run_program({"verify", copy}).code == 7);
+    // The same bit anywhere in the receipt: in its name, in what keeps its words apart.
+    const std::string as_written = file_text(fs::path(film) / name);
+    const std::size_t begin = as_written.find("{\"unfurl_receipt");
+    REQUIRE(begin != std::string::npos);
+    for (const std::size_t at : {begin + 2, as_written.find("\",\"", begin) + 1}) {
+      bytes = as_written;
+      bytes[at] = static_cast<char>(bytes[at] ^ 1);
+      dir.write(fs::path(copy).filename().string(), bytes);
+      const ProgramResult damaged = run_program({"verify", copy});
+      CHECK(damaged.code == 7);
+      CHECK(damaged.err == "unfurl: the file is not as it was written: its receipt is damaged\n");
+    }
   }
 }
 
