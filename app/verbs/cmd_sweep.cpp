@@ -246,9 +246,9 @@ std::optional<Sweep> compute(const SweepPlan& plan, StudySession& session, const
         [&](Journal& all, const StudyHooks& own) { return run_sweep(plan, all, own); },
         [](const Sweep& sweep) { return sweep.missing.empty(); });
   } catch (const JournalMismatch& error) {
-    throw FileError(session.directory(), std::string(error.what()) +
-                                             ", or --force to begin anew; other "
-                                             "--vary or --measure than now?");
+    const char* const cure =
+        arguments.force ? ", or move it away; other " : ", or --force to begin anew; other ";
+    throw FileError(session.directory(), std::string(error.what()) + cure + "--vary or --measure than now?");
   }
 }
 

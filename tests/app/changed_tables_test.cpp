@@ -119,7 +119,8 @@ TEST_CASE("a changed table of one share is not cured by the --force that was giv
                     "--set",     "solver.step=2e-4", "--quiet", "-o",
                     dir / "s",   "--shard"};
   const std::string table = dir / "s/sweep_1_of_2.csv";
-  std::string other = "timeout 60 \"" UNFURL_PROGRAM "\"";
+  std::string other =
+      "timeout --foreground 60 \"" UNFURL_PROGRAM "\"";  // which else passes on a signal twice
   for (const std::string& word : sweep) other += " '" + word + "'";
   const std::string script =
       other + " 1/2 --threads 1 2>/dev/null & p=$!; " + other + " 2/2 --threads 1 2>/dev/null & q=$!; cd '" +
