@@ -365,8 +365,10 @@ class StateTable {
 
  private:
   void make_room(Index states, Index rods) {
+    const Index before = out_.force_unique.rows();
     out_.axial_force.conservativeResize(states, rods);
     out_.force_unique.conservativeResize(states, rods);
+    if (states > before) out_.force_unique.bottomRows(states - before).setConstant(false);  // it is copied
   }
 
   static std::vector<const Row*> columns(const Simulation& run, bool books, Diagnostics& out) {
