@@ -101,8 +101,8 @@ node, rod, length = done.stdout.split()
 assert node == names[0] and abs(float(length) - 3) < 1e-11, done.stdout  # a chord of the paper's ring is 3 m
 print("mat: equal to the tables in Octave, bit for bit")
 
-def dom(file, time, gl=("--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"), there="at pixel"):
-    for _ in range(5):  # on a busy machine it may be told before the page's script has run
+def dom(file, time, gl=("--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"), there=r"at pixel -?\d"):
+    for _ in range(5):  # on a busy machine it may be told before the page's script, which is in it, has run
         page = subprocess.run(
             ["chromium", "--headless", "--no-sandbox", *gl,
              "--window-size=1000,700", "--virtual-time-budget=4000", "--dump-dom", f"file://{file}#t={time}&positions"],
