@@ -384,7 +384,8 @@ bool Stepper::Loop::leave_pose(State& state, double h) {
   const bool ahead = in_pose_->t > now().t && !in_pose(now().t);
   if (state.t != now().t || ahead) return false;
   if (!in_pose(now().t) || (!behind_ && !find_behind(now()))) return in_pose_.reset(), false;
-  const auto& [across, free] = *behind_;
+  const AcrossPose& across = behind_->across;
+  const std::vector<Index>& free = behind_->free;
   State out;
   if (!across.at(system(), state.t + h, out,
                  [&](State& next) { return across.move_free(system(), free, now(), next); }))
