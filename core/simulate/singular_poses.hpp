@@ -12,8 +12,7 @@ namespace unfurl {
 // rows) that is not zero everywhere, followed from pose to pose: block inverse iteration with G G^T + e I or
 // G^T G + e I, whichever has fewer zeros, warm-started, then the singular values of G on the block
 // (Rayleigh-Ritz), which converge like the square of the block's error. `redundant`: how many rows depend on
-// others in every pose; their zeros are passed over. `count`: so many
-// of the smallest are known.
+// others in every pose; their zeros are passed over. `count`: so many of the smallest are known.
 class SmallestSingularValue {
  public:
   SmallestSingularValue(const System& system, Index redundant, Index count = 1);

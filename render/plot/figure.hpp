@@ -50,8 +50,8 @@ struct Axis {
   bool shown = true;        // false: no tick labels and no axis label (a panel that shares the one below)
   bool degrees = false;     // ticks at multiples of 15, 30, 45, ...
   bool whole = false;       // a count: ticks at whole numbers
-  std::vector<std::string> names =
-      {};  // words in the place of numbers: the k-th at k and about it, each with its tick
+  // Words in the place of numbers: the k-th at k and about it, each with its tick.
+  std::vector<std::string> names = {};
   // Log axes leave out values <= 0. True: exact zeros are drawn at the bottom edge instead; say so in the
   // caption.
   bool zeros_at_floor = false;

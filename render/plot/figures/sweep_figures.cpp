@@ -20,8 +20,8 @@ namespace unfurl {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t most_curves = 12,
-                      most_words = 30;  // that can be told apart; that stand below each other
+constexpr std::size_t most_curves = 12;  // that can be told apart
+constexpr std::size_t most_words = 30;   // that stand below each other
 
 // Values of a measure by the numbers of the row's axes; finite ones only.
 double value_of(const SweepPlan& plan, const std::vector<std::string>& row, std::size_t measure) {
