@@ -39,8 +39,8 @@ bool DeadCentres::prepare(const State& from, const State& to) {
 }
 
 DeadCentres::Verdict DeadCentres::judge(const State& from, const State& to) {
-  const double before = from.z == known_at_ ? left_ : 0.0;
   if (system_.drives().empty() || !slows(from.t, to.t) || !prepare(from, to)) return {};
+  const double before = from.z.size() == known_at_.size() && from.z == known_at_ ? left_ : 0.0;
   sigma_->moved(from.z);
   const double way = sigma_->moved(to.z);
   known_at_ = to.z;
