@@ -14,13 +14,14 @@ namespace {
 // from the largest row on. Scaled so that what is left of a row is to be compared with 1.
 void add_dependent(const SparseRows& G, int first, int end, double negligible, std::vector<int>& dependent) {
   using Row = Eigen::SparseVector<double>;
+  const auto length = [](const Row& row) { return row.size() > 0 ? row.norm() : 0.0; };
   std::vector<std::pair<int, Row>> rest;
   for (int r = first; r < end; ++r) rest.emplace_back(r, G.row(r).transpose());
   while (!rest.empty()) {
-    const auto most = std::max_element(rest.begin(), rest.end(), [](const auto& a, const auto& b) {
-      return a.second.norm() < b.second.norm();
+    const auto most = std::max_element(rest.begin(), rest.end(), [&](const auto& a, const auto& b) {
+      return length(a.second) < length(b.second);
     });
-    const double norm = most->second.norm();
+    const double norm = length(most->second);
     if (norm <= negligible) break;
     const Row unit = most->second / norm;
     rest.erase(most);
