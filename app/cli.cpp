@@ -279,9 +279,8 @@ int dispatch(const std::vector<std::string>& words) {
   }
   const WrittenReport report(a.view.picture.empty() ? a.output : a.view.picture);
   const int code = command.run(a);
-  if (const std::string letters = plot::lacking_letters(); !letters.empty())
-    std::cerr << "unfurl: warning: DejaVu Sans has no " << letters
-              << ": pictures and figures show signs in their place; figures as SVG have them\n";
+  if (const std::string letters = plot::take_lacking_letters(); !letters.empty())
+    std::cerr << "unfurl: warning: " << letters << "\n";
   if (!a.quiet) std::cerr << report.text();
   return code;
 }

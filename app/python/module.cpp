@@ -16,7 +16,7 @@
 #include <mutex>
 
 #include "app/python/asker.hpp"
-#include "app/python/run_files.hpp"
+#include "app/python/run_object.hpp"
 #include "app/python/studies.hpp"
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/measures.hpp"
@@ -37,129 +37,38 @@
 #include "core/text/nearest_name.hpp"
 #include "core/text/version.hpp"
 #include "render/gl/graphics_error.hpp"
+#include "render/plot/lacking_letters.hpp"
 
 namespace py = pybind11;
 using namespace unfurl;
 
 namespace {
 
-using Doubles = std::vector<double>;
-
-// A view that keeps its owner alive, and that nobody writes into.
-template <class T>
-py::array view(const std::vector<T>& values, std::vector<py::ssize_t> shape, const py::object& owner) {
-  py::array_t<T> array(std::move(shape), values.data(), owner);
-  array.attr("flags").attr("writeable") = false;
-  return array;
-}
-
 // One picture at a time: what draws text has one state for all.
 std::mutex drawing;
 
-// A run with what a person looks at, as plain arrays. Made without the interpreter's lock.
-class Run {
- public:
-  Run(Scene scene, Simulation run, std::shared_ptr<std::mutex> use,
-      const std::function<bool()>& cancelled = {}, const std::string& made_by = "run()")
-      : run_{std::move(scene), std::move(run), {}, made_by}, use_(std::move(use)) {
-    const std::lock_guard lock(*use_);
-    record_singular_poses(run_.simulation, cancelled);
-    run_.diagnostics = judge(run_.simulation, cancelled);
-    const Trajectory& trajectory = simulation().trajectory;
-    for (std::size_t i = 0; i < trajectory.size(); ++i) {
-      t_.push_back(trajectory.time(i));
-      const VectorXd x = trajectory.positions(i), v = trajectory.velocities(i);
-      x_.insert(x_.end(), x.begin(), x.end());
-      v_.insert(v_.end(), v.begin(), v.end());
-      for (const RodCopy& rod : structure().rod_copies) {
-        force_.push_back(diagnostics().axial_force(static_cast<Index>(i), rod.source));
-        unique_.push_back(diagnostics().force_unique(static_cast<Index>(i), rod.source));
-      }
-    }
-  }
-
-  const Scene& scene() const { return run_.scene; }
-  const Simulation& simulation() const { return run_.simulation; }
-  const Diagnostics& diagnostics() const { return run_.diagnostics; }
-  const Structure& structure() const { return simulation().trajectory.structure(); }
-  // Work on the run that takes long: without the interpreter's lock, one after the other (states between
-  // steps are computed as they are asked for), under one more lock where there is one.
-  template <class Work>
-  auto alone(const Work& work, std::mutex* more = nullptr) const {
-    const py::gil_scoped_release release;
-    const std::lock_guard lock(*use_);
-    const auto held = more ? std::unique_lock(*more) : std::unique_lock<std::mutex>();
-    return work(run_);
-  }
-  py::ssize_t steps() const { return static_cast<py::ssize_t>(t_.size()); }
-  py::ssize_t nodes() const { return static_cast<py::ssize_t>(structure().node_copies.size()); }
-  py::ssize_t rods() const { return static_cast<py::ssize_t>(structure().rod_copies.size()); }
-
-  static py::array t(const py::object& self) { return view(of(self).t_, {of(self).steps()}, self); }
-  static py::array x(const py::object& self) {
-    return view(of(self).x_, {of(self).steps(), of(self).nodes(), 3}, self);
-  }
-  static py::array v(const py::object& self) {
-    return view(of(self).v_, {of(self).steps(), of(self).nodes(), 3}, self);
-  }
-  static py::array force(const py::object& self) {
-    return view(of(self).force_, {of(self).steps(), of(self).rods()}, self);
-  }
-  static py::array unique(const py::object& self) {
-    const py::array bytes = view(of(self).unique_, {of(self).steps(), of(self).rods()}, self);
-    return bytes.attr("view")("bool");
-  }
-  static py::dict series(const py::object& self) {
-    py::dict columns;
-    for (const Series& column : of(self).diagnostics().columns)
-      columns[py::str(column.name)] = view(column.values, {of(self).steps()}, self);
-    return columns;
-  }
-
-  void require_time(double time) const {
-    const Trajectory& trajectory = simulation().trajectory;
-    if (!(time >= trajectory.start_time() && time <= trajectory.end_time()))
-      throw py::index_error("t = " + exact_number(time) + " s is not within the run, which goes from " +
-                            exact_number(trajectory.start_time()) + " to " +
-                            exact_number(trajectory.end_time()) + " s");
-  }
-  py::array at(double time) const {
-    require_time(time);
-    const VectorXd x =
-        alone([time](const JudgedRun& run) { return run.simulation.trajectory.positions_at(time); });
-    return py::array_t<double>({nodes(), py::ssize_t{3}}, x.data());
-  }
-  double measure(const std::string& name) const {
-    std::vector<std::string> columns;
-    for (const Series& column : diagnostics().columns) columns.push_back(column.name);
-    const RunMeasure measure = find_measure(name, columns);
-    return alone([&](const JudgedRun& run) { return measure.value(run.simulation, run.diagnostics); });
-  }
-
- private:
-  static const Run& of(const py::object& self) { return self.cast<const Run&>(); }
-
-  JudgedRun run_;
-  std::shared_ptr<std::mutex> use_;  // of those that share a trajectory
-  Doubles t_, x_, v_, force_;
-  std::vector<std::uint8_t> unique_;
-};
-
-// A frame of a time that the run has not is no picture of it.
-void write_frame(const Run& run, double t, const std::string& file) {
-  run.require_time(t);
-  run.alone([&](const JudgedRun& judged) { write_still(judged, t, file); }, &drawing);
+// Pictures and exports: one at a time, Ctrl-C ends them. What they cannot show is warned of.
+template <class Work>
+void write(const Run& run, const Work& work) {
+  std::vector<std::string> said;
+  heard([&](const Between& between) {
+    run.alone(
+        [&](const JudgedRun& judged) {
+          plot::take_lacking_letters();  // of work that ended early
+          work(judged, between, said);
+          if (std::string letters = plot::take_lacking_letters(); !letters.empty())
+            said.push_back(std::move(letters));
+        },
+        &drawing);
+  });
+  warn(said);
 }
 
-void film_of(const Run& run, const std::string& file) {
-  Asker asker;
-  const std::function<bool()> cancelled = [&asker] { return asker(); };
-  try {
-    run.alone([&](const JudgedRun& judged) { write_film(judged, file, cancelled); }, &drawing);
-  } catch (const Cancelled&) {
-    asker.raise();
-    throw;
-  }
+void write_frame(const Run& run, double t, const std::string& file) {
+  run.require_time(t);  // of a time that the run has not a frame is no picture of it
+  write(run, [&](const JudgedRun& judged, const Between& between, auto&) {
+    write_still(judged, t, file, between);
+  });
 }
 
 // Where a scene comes from: a name, a file, or a text.
@@ -417,17 +326,28 @@ void add_run(py::module_& module) {
       .def(
           "export",
           [](const Run& run, const std::string& format, const std::string& directory) {
-            run.alone([&](const JudgedRun& judged) { write_export(judged, format, directory); }, &drawing);
+            write(run, [&](const JudgedRun& judged, const Between& between, auto& said) {
+              said = write_export(judged, format, directory, between);
+            });
           },
           py::arg("format"), py::arg("directory"))
       .def(
           "plot",
           [](const Run& run, const std::string& name, const std::string& file, const std::string& style) {
-            run.alone([&](const JudgedRun& judged) { write_plot(judged, name, file, style); }, &drawing);
+            write(run, [&](const JudgedRun& judged, const Between& between, auto&) {
+              write_plot(judged, name, file, style, between);
+            });
           },
           py::arg("name"), py::arg("file"), py::arg("style") = "screen")
       .def("frame", &write_frame, py::arg("t"), py::arg("file"))
-      .def("film", &film_of, py::arg("file"));
+      .def(
+          "film",
+          [](const Run& run, const std::string& file) {
+            write(run, [&](const JudgedRun& judged, const Between& between, auto&) {
+              write_film(judged, file, between);
+            });
+          },
+          py::arg("file"));
 }
 
 void add_scene(py::module_& module) {

@@ -45,7 +45,8 @@ std::string summary_of(const JudgedRun& run) {
   return summary_json(run.scene.name, run.simulation, run.diagnostics, mobility);
 }
 
-void write_export(const JudgedRun& run, const std::string& format, const std::string& directory) {
+std::vector<std::string> write_export(const JudgedRun& run, const std::string& format,
+                                      const std::string& directory, const Between& between) {
   std::vector<std::string_view> known;
   for (const ExportFormat& row : export_formats()) known.push_back(row.name);
   const ExportFormat* found = find_export_format(format);
@@ -57,7 +58,7 @@ void write_export(const JudgedRun& run, const std::string& format, const std::st
   const Scene& scene = run.scene;
   const std::string text = scene_text(scene);
   const ExportedLooks looks = exported_looks(scene, run.simulation.trajectory);
-  std::vector<std::string> about_text;
+  std::vector<std::string> about_text, said;
   for (const SceneProblem& warning : scene.warnings) about_text.push_back(problem_text(warning));
   found->write({run.simulation,
                 run.diagnostics,
@@ -69,11 +70,14 @@ void write_export(const JudgedRun& run, const std::string& format, const std::st
                 text,
                 {},
                 &looks,
-                about_text});
+                about_text,
+                &said,
+                between});
+  return said;
 }
 
 void write_plot(const JudgedRun& run, const std::string& name, const std::string& file,
-                const std::string& style) {
+                const std::string& style, const Between& between) {
   std::vector<std::string_view> known;
   for (const FigureKind& kind : figure_kinds())
     if (kind.applies(run.simulation, run.diagnostics)) known.push_back(kind.name);
@@ -87,15 +91,18 @@ void write_plot(const JudgedRun& run, const std::string& name, const std::string
   if (extension != ".png" && extension != ".svg" && extension != ".pdf")
     throw StudyError("a figure is written as .png, .svg or .pdf, not " + in_quotes(extension));
   const RunReceipt receipt(run, "plot(" + python_text(name) + ", style=" + python_text(style) + ")", file);
-  write_figure(kind->make(run.simulation, run.diagnostics), file, options);
+  const Figure figure = kind->make(run.simulation, run.diagnostics);
+  between();
+  write_figure(figure, file, options);
 }
 
-void write_still(const JudgedRun& run, double t, const std::string& file) {
+void write_still(const JudgedRun& run, double t, const std::string& file, const Between& between) {
   const std::string extension = std::filesystem::path(file).extension().string();
   if (extension != ".png") throw StudyError("a frame is written as .png, not " + in_quotes(extension));
   const RunReceipt receipt(run, "frame(" + exact_number(t) + ")", file);
   const auto context = make_offscreen_context();
-  const Image image = still(run.scene, run.simulation, run.diagnostics, t, *context);
+  const Image image = still(run.scene, run.simulation, run.diagnostics, t, *context, between);
+  between();
   write_png(file, image, has_alpha(run.scene.render));
 }
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "app/output/receipt.hpp"
 #include "core/diagnostics/diagnostics.hpp"
@@ -28,14 +29,19 @@ class RunReceipt {
   ReceiptWriter writer_;
 };
 
+// Called between pieces of work, which ends with what it throws.
+using Between = std::function<void()>;
+
 // All throw what derives from Error where a person can mend it.
 std::string summary_of(const JudgedRun& run);
-void write_export(const JudgedRun& run, const std::string& format, const std::string& directory);
+// Returns what the format could not show.
+std::vector<std::string> write_export(const JudgedRun& run, const std::string& format,
+                                      const std::string& directory, const Between& between);
 void write_plot(const JudgedRun& run, const std::string& name, const std::string& file,
-                const std::string& style);
+                const std::string& style, const Between& between);
 // At a time within the run.
-void write_still(const JudgedRun& run, double t, const std::string& file);
-// .mp4, .webp or .gif, of the frames that `unfurl render` draws. Throws Cancelled.
-void write_film(const JudgedRun& run, const std::string& file, const std::function<bool()>& cancelled);
+void write_still(const JudgedRun& run, double t, const std::string& file, const Between& between);
+// .mp4, .webp or .gif, of the frames that `unfurl render` draws.
+void write_film(const JudgedRun& run, const std::string& file, const Between& between);
 
 }  // namespace unfurl

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -9,7 +8,6 @@
 
 #include "app/python/run_files.hpp"
 #include "core/export/atomic_file.hpp"
-#include "core/study/reference.hpp"
 #include "core/text/nearest_name.hpp"
 #include "render/gl/context.hpp"
 #include "render/image/gif_animation.hpp"
@@ -35,14 +33,14 @@ using Frame = std::shared_ptr<const Image>;
 // The film's frames one by one, of its size.
 class FrameSource {
  public:
-  FrameSource(const JudgedRun& run, const std::function<bool()>& cancelled)
+  FrameSource(const JudgedRun& run, const Between& between)
       : scene_(fitted(run.scene, run.simulation)),
         shots_(film_shots(run.simulation.trajectory, scene_.render)),
         style_(film_style(scene_, run.simulation, run.diagnostics)),
         builder_(run.simulation.trajectory, style_),
         context_(make_offscreen_context()),
         renderer_(*context_, style_.width, style_.height),
-        cancelled_(cancelled) {
+        between_(between) {
     if (shots_.size() > most_frames)
       throw StudyError(
           "the film would have more than 99999 frames; take fewer per second, a larger render.speed or an "
@@ -51,11 +49,11 @@ class FrameSource {
 
   const RenderOptions& options() const { return scene_.render; }
   std::size_t size() const { return shots_.size(); }
-  // Throws Cancelled. A picture that is held is drawn once.
+  // A picture that is held is drawn once.
   Frame frame(std::size_t k) {
-    if (cancelled_ && cancelled_()) throw Cancelled();
+    between_();
     if (drawn_ && shots_[k] == shot_) return drawn_;
-    Image image = exposed(renderer_, builder_, shots_[k], options().depth_of_field);
+    Image image = exposed(renderer_, builder_, shots_[k], options().depth_of_field, between_);
     if (options().supersample != 1) image = scaled_down(image, options().width, options().height);
     shot_ = shots_[k];
     return drawn_ = std::make_shared<const Image>(std::move(image));
@@ -68,7 +66,7 @@ class FrameSource {
   FrameBuilder builder_;
   std::unique_ptr<GlContext> context_;
   Renderer renderer_;
-  const std::function<bool()>& cancelled_;
+  const Between& between_;
   Shot shot_;
   Frame drawn_;
 };
@@ -106,12 +104,12 @@ void write_mp4(FrameSource& frames, const std::string& file) {
 
 }  // namespace
 
-void write_film(const JudgedRun& run, const std::string& file, const std::function<bool()>& cancelled) {
+void write_film(const JudgedRun& run, const std::string& file, const Between& between) {
   const std::string extension = std::filesystem::path(file).extension().string();
   const bool webp = extension == ".webp", gif = extension == ".gif", mp4 = extension == ".mp4";
   if (!webp && !gif && !mp4)
     throw StudyError("a film is written as .mp4, .webp or .gif, not " + in_quotes(extension));
-  FrameSource frames(run, cancelled);
+  FrameSource frames(run, between);
   const RunReceipt receipt(run, "film()", file);
   if (webp) write_webp(frames, file);
   if (gif) write_gif(frames, file);

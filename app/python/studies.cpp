@@ -127,12 +127,6 @@ SceneSource as_now(const SceneSource& given) {
   return source;
 }
 
-// Throws where warnings are errors.
-void warn(const std::vector<std::string>& texts) {
-  for (const std::string& text : texts)
-    if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
-}
-
 }  // namespace
 
 py::dict sweep_scene(const SceneSource& given, const std::vector<std::pair<std::string, AxisValues>>& vary,

@@ -343,13 +343,15 @@ void RunTables::flush_to_disk() {
 
 namespace {
 
-void write_long_nodes(const std::filesystem::path& path, const Trajectory& trajectory) {
+void write_long_nodes(const std::filesystem::path& path, const ExportJob& job) {
+  const Trajectory& trajectory = job.run.trajectory;
   CsvFile whole(path);
   CsvRows& file = whole.rows();
   for (const char* name : {"t_s", "node", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s"}) file.cell(name);
   file.end_row();
   const auto& nodes = trajectory.structure().node_copies;
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    job.next();
     const VectorXd x = trajectory.positions(i), v = trajectory.velocities(i);
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       file.cell(trajectory.time(i));
@@ -362,8 +364,9 @@ void write_long_nodes(const std::filesystem::path& path, const Trajectory& traje
   whole.commit();
 }
 
-void write_long_rods(const std::filesystem::path& path, const Trajectory& trajectory,
-                     const Diagnostics& diagnostics) {
+void write_long_rods(const std::filesystem::path& path, const ExportJob& job) {
+  const Trajectory& trajectory = job.run.trajectory;
+  const Diagnostics& diagnostics = job.diagnostics;
   CsvFile whole(path);
   CsvRows& file = whole.rows();
   for (const char* name :
@@ -372,6 +375,7 @@ void write_long_rods(const std::filesystem::path& path, const Trajectory& trajec
   file.end_row();
   const Structure& structure = trajectory.structure();
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    job.next();
     const VectorXd x = trajectory.positions(i);
     for (const RodCopy& rod : structure.rod_copies) {
       file.cell(trajectory.time(i));
@@ -392,8 +396,8 @@ void write_long_rods(const std::filesystem::path& path, const Trajectory& trajec
 
 void export_csv(const ExportJob& job) {
   const auto folder = export_folder(job, "csv");
-  write_long_nodes(folder / "nodes.csv", job.run.trajectory);
-  write_long_rods(folder / "rods.csv", job.run.trajectory, job.diagnostics);
+  write_long_nodes(folder / "nodes.csv", job);
+  write_long_rods(folder / "rods.csv", job);
 }
 
 }  // namespace unfurl

@@ -50,6 +50,11 @@ struct ExportJob {
   // scene with all of its keys in them.
   std::span<const std::string> about_text = {};
   std::vector<std::string>* said = nullptr;  // takes what a format could not show
+  std::function<void()> between = {};        // called between pieces of the work; what it throws ends it
+
+  void next() const {
+    if (between) between();
+  }
 };
 
 struct ExportFormat {

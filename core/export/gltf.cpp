@@ -46,7 +46,8 @@ class GltfWriter {
     const std::size_t numbers = 7 * structure_.rod_copies.size() + 3 * structure_.node_copies.size();
     MotionKeys keys = motion_keys(
         trajectory_, job.frame_interval,
-        std::clamp<std::size_t>(most_animated / std::max<std::size_t>(numbers, 1), fewest_keys, most_keys));
+        std::clamp<std::size_t>(most_animated / std::max<std::size_t>(numbers, 1), fewest_keys, most_keys),
+        job.between);
     if (const std::string warning = too_few_keys(keys, "animation.glb"); !warning.empty() && job.said)
       job.said->push_back(warning);
     times_ = std::move(keys.times);
@@ -206,6 +207,7 @@ class GltfWriter {
   // A straight member between two nodes at all keys. The shortest turn from each key to the next: no spin
   // about its own axis between them.
   void follow(int a_node, int b_node, double radius, Motion& motion) const {
+    job_.next();
     Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
     Vec3 axis = Vec3::UnitY();
     for (const VectorXd& pose : poses_) {
@@ -417,6 +419,7 @@ class GltfWriter {
       animation["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
     };
     for (const Motion& motion : motions_) {
+      job_.next();
       channel(motion.node, "translation", motion.translation, 3);
       channel(motion.node, "rotation", motion.rotation, 4);
       channel(motion.node, "scale", motion.scale, 3);
@@ -469,7 +472,9 @@ class GltfWriter {
 }  // namespace
 
 void export_gltf(const ExportJob& job) {
-  write_file_atomically(job.directory / "animation.glb", GltfWriter(job).file());
+  const std::string file = GltfWriter(job).file();
+  job.next();
+  write_file_atomically(job.directory / "animation.glb", file);
 }
 
 }  // namespace unfurl

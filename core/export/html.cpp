@@ -68,7 +68,7 @@ void add_motion(const ExportJob& job, Page& page) {
   const Trajectory& trajectory = job.run.trajectory;
   const Structure& structure = trajectory.structure();
   const std::size_t most = bearable_poses(structure);
-  MotionKeys keys = motion_keys(trajectory, job.frame_interval, most);
+  MotionKeys keys = motion_keys(trajectory, job.frame_interval, most, job.between);
   const MatrixXd known = shown_forces(job);
   const Magnitudes size = magnitudes(known);
   const double bearable = force_share * size.usual;
@@ -84,6 +84,7 @@ void add_motion(const ExportJob& job, Page& page) {
   const Mat3 upright = upright_rotation(structure.gravity);
   std::vector<float> positions, forces;
   for (std::size_t k = 0; k < keys.times.size(); ++k) {
+    job.next();
     for (Index n = 0; n < keys.poses[k].size() / 3; ++n)
       for (const double x : Vec3(upright * (keys.poses[k].segment<3>(3 * n) - origin)))
         positions.push_back(static_cast<float>(x));
@@ -260,6 +261,7 @@ void export_html(const ExportJob& job) {
   add_members(job, page);
   add_lines(job, page);
   add_curves(job, page);
+  job.next();
   const std::string json = page.dump(-1, ' ', true, Page::error_handler_t::replace);
   write_file_atomically(job.directory / "viewer.html",
                         filled(viewer_page, xml_text(page["title"].get<std::string>()), inside_script(json)));

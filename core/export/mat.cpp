@@ -86,6 +86,7 @@ void export_mat(const ExportJob& job) {
       force(rods * steps), ends;
   std::vector<std::uint8_t> unique(rods * steps);
   for (std::size_t i = 0; i < steps; ++i) {
+    job.next();
     time[i] = trajectory.time(i);
     const VectorXd x = trajectory.positions(i), v = trajectory.velocities(i);
     for (std::size_t k = 0; k < 3 * nodes; ++k) {  // [steps, nodes, 3]
@@ -122,6 +123,7 @@ void export_mat(const ExportJob& job) {
   file.names("series_names", column_names);
   file.names("node_names", node_names);
   file.names("rod_names", rod_names);
+  job.next();
   write_file_atomically(job.directory / "run.mat", file.text());
 }
 

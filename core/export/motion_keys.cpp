@@ -29,8 +29,11 @@ double extent(const VectorXd& pose) {
 
 class KeySearch {
  public:
-  KeySearch(const Trajectory& run, double interval, std::size_t most)
-      : run_(run), most_(std::max<std::size_t>(most, 2)), length_(run.end_time() - run.start_time()) {
+  KeySearch(const Trajectory& run, double interval, std::size_t most, const std::function<void()>& between)
+      : run_(run),
+        most_(std::max<std::size_t>(most, 2)),
+        length_(run.end_time() - run.start_time()),
+        between_(between) {
     const double asked = std::max(std::ceil(length_ / interval - 1e-9), 1.0);
     const double wanted = std::min(fewest, static_cast<double>(run.size() - 1));
     interval_ = std::min(interval, length_) / std::max(std::ceil(wanted / asked), 1.0);
@@ -66,6 +69,7 @@ class KeySearch {
     VectorXd before = run_.positions_at(run_.start_time());
     Vec3 low = Vec3::Constant(1e300), high = -low;
     for (long i = 1; i <= count; ++i) {
+      if (between_) between_();
       const double a = first_.empty() ? run_.start_time() : first_.back().b;
       const double b = i == count ? run_.end_time() : run_.start_time() + interval_ * static_cast<double>(i);
       VectorXd to = run_.positions_at(b);
@@ -84,6 +88,7 @@ class KeySearch {
   // In the middle, and at some states in between: what turns once from key to key is at its place in the
   // middle of them, too. Within one step nothing turns as far.
   void look(Span& span) const {
+    if (between_) between_();
     span.middle = run_.positions_at(0.5 * (span.a + span.b));
     if (span.b - span.a < 2 * closest * length_) return;
     span.off = off(span, 0.5, span.middle);
@@ -131,6 +136,7 @@ class KeySearch {
   const Trajectory& run_;
   std::size_t most_;
   double length_, interval_ = 0, size_ = 0;
+  const std::function<void()>& between_;
   std::vector<Span> first_;
   std::priority_queue<Span> spans_;
 };
@@ -162,9 +168,10 @@ Gap gap_between(const Trajectory& run, const MatrixXd& values, double a, double 
 
 }  // namespace
 
-MotionKeys motion_keys(const Trajectory& run, double interval, std::size_t most) {
+MotionKeys motion_keys(const Trajectory& run, double interval, std::size_t most,
+                       const std::function<void()>& between) {
   if (!(run.end_time() > run.start_time())) return {{run.end_time()}, {run.positions_at(run.end_time())}, 0};
-  return KeySearch(run, interval, most).search();
+  return KeySearch(run, interval, most, between).search();
 }
 
 VectorXd values_at(const Trajectory& run, const MatrixXd& values, double t) {

@@ -2,6 +2,7 @@
 // Moments of a run between which a straight line from pose to pose is its motion, for files that others play.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,8 +20,9 @@ struct MotionKeys {
 // At most `interval` apart, about 200 of them at least where the run has as many states, and closer where the
 // straight lines would leave the motion by more than a thousandth of the structure's size or shorten a rod by
 // more than a hundredth of its length: a rod that turns far between two keys would be drawn short, or turning
-// backwards. No more than `most`, those where they matter most.
-MotionKeys motion_keys(const Trajectory& run, double interval, std::size_t most);
+// backwards. No more than `most`, those where they matter most. `between`: called now and then, may throw.
+MotionKeys motion_keys(const Trajectory& run, double interval, std::size_t most,
+                       const std::function<void()>& between = {});
 
 // Of each column of values at the states [states x columns], at any time: along straight lines; up to a state
 // at which it is not known, and from there on, it is what is known next to it.

@@ -38,6 +38,7 @@ void export_npy(const ExportJob& job) {
   std::vector<std::uint8_t> unique;  // numpy's bool
   for (const RodCopy& rod : structure.rod_copies) ends.insert(ends.end(), {rod.a, rod.b});
   for (std::size_t i = 0; i < steps; ++i) {
+    job.next();
     time.push_back(trajectory.time(i));
     const VectorXd x = trajectory.positions(i), v = trajectory.velocities(i);
     position.insert(position.end(), x.begin(), x.end());
@@ -47,6 +48,7 @@ void export_npy(const ExportJob& job) {
       unique.push_back(job.diagnostics.force_unique(static_cast<Index>(i), rod.source) ? 1 : 0);
     }
   }
+  job.next();
   write_array(folder / "t_s.npy", "<f8", {steps}, time);
   write_array(folder / "positions_m.npy", "<f8", {steps, nodes, 3}, position);
   write_array(folder / "velocities_m_s.npy", "<f8", {steps, nodes, 3}, velocity);

@@ -125,6 +125,7 @@ void export_vtk(const ExportJob& job) {
     return std::string(job.name) + suffix;
   };
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    job.next();
     const std::string name = name_of(i);
     write_file_atomically(folder / name, grid(job, cells, i), Flush::later);
     collection += "<DataSet timestep=\"" + number(trajectory.time(i)) + "\" part=\"0\" file=\"" +

@@ -3,6 +3,7 @@
 
 #include <mutex>
 #include <set>
+#include <utility>
 
 namespace unfurl::plot {
 
@@ -25,16 +26,17 @@ void note_lacking(std::string_view letter) {
   lacking().letters.emplace(letter);
 }
 
-std::string lacking_letters() {
+std::string take_lacking_letters() {
   constexpr std::size_t most = 12;
   const std::lock_guard lock(lacking().mutex);
-  std::string text;
+  const auto letters = std::exchange(lacking().letters, {});
+  if (letters.empty()) return {};
+  std::string text = "DejaVu Sans has no ";
   std::size_t told = 0;
-  for (const std::string& letter : lacking().letters) {
-    if (told == most) return text + " and " + std::to_string(lacking().letters.size() - most) + " more";
-    text += (told++ == 0 ? "" : ", ") + letter;
-  }
-  return text;
+  for (const std::string& letter : letters)
+    if (told < most) text += (told++ == 0 ? "" : ", ") + letter;
+  if (letters.size() > most) text += " and " + std::to_string(letters.size() - most) + " more";
+  return text + ": pictures and figures show signs in their place; figures as SVG have them";
 }
 
 }  // namespace unfurl::plot

@@ -8,7 +8,9 @@
 
 namespace unfurl {
 
-Image exposed(Renderer& renderer, const FrameBuilder& builder, const Shot& shot, double depth_of_field) {
+Image exposed(Renderer& renderer, const FrameBuilder& builder, const Shot& shot, double depth_of_field,
+              const std::function<void()>& between) {
+  if (between) between();
   const DrawList first = builder.build(shot);
   const bool moving = shot.open > 0, lens = depth_of_field > 0 && first.camera.parallel_height <= 0;
   if (shot.card || (!moving && !lens)) return renderer.draw(first);
@@ -16,6 +18,7 @@ Image exposed(Renderer& renderer, const FrameBuilder& builder, const Shot& shot,
   std::vector<std::uint32_t> sum;
   Image image;
   for (int i = 0; i < count; ++i) {
+    if (between) between();
     Shot part = shot;
     part.t += shot.open * (i + 0.5) / count;
     DrawList list = moving ? builder.build(part) : first;

@@ -46,13 +46,16 @@ Image without_alpha(const Image& image, const RenderOptions& options) {
 }
 
 Image still(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics, double t,
-            GlContext& context) {
+            GlContext& context, const std::function<void()>& between) {
   const Scene shown = fitted(scene, run);
+  if (between) between();
   const RenderOptions& options = shown.render;
   const FrameStyle style = film_style(shown, run, diagnostics);
   const FrameBuilder builder(run.trajectory, style);
+  if (between) between();
   Renderer renderer(context, style.width, style.height);
-  const Image image = exposed(renderer, builder, shot_at(run.trajectory, options, t), options.depth_of_field);
+  const Image image =
+      exposed(renderer, builder, shot_at(run.trajectory, options, t), options.depth_of_field, between);
   return options.supersample == 1 ? image : scaled_down(image, options.width, options.height);
 }
 

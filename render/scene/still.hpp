@@ -2,6 +2,8 @@
 // Finished pictures of a run: of a film, or one by itself.
 #pragma once
 
+#include <functional>
+
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/scene/scene.hpp"
 #include "core/simulate/simulation.hpp"
@@ -19,8 +21,9 @@ bool has_alpha(const RenderOptions& options);
 // texts are pale.
 Image without_alpha(const Image& image, const RenderOptions& options);
 
-// As a film shows this time [s] of the run, of the size that the scene says.
+// As a film shows this time [s] of the run, of the size that the scene says. `between`: called between pieces
+// of the work, which ends with what it throws.
 Image still(const Scene& scene, const Simulation& run, const Diagnostics& diagnostics, double t,
-            GlContext& context);
+            GlContext& context, const std::function<void()>& between = {});
 
 }  // namespace unfurl

@@ -686,6 +686,44 @@ def test_ctrl_c_ends_a_long_film(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+def test_ctrl_c_ends_exports_plots_and_frames(tmp_path):
+    """Each takes half a second and more; a signal comes after a twentieth."""
+    run = unfurl.Scene("hoop6", set={"structure.units": 24, "solver.step": 0.0003, "render.fps": 1000, "render.size": [1280, 720],
+                                     "render.depth_of_field": 0.05}).run()
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    files = {"vtk": "vtk/hoop6.pvd", "csv": "csv/nodes.csv", "npy": "npy/t_s.npy", "mat": "run.mat",
+             "gltf": "animation.glb", "html": "viewer.html"}
+    works = {file: (lambda kind=kind: run.export(kind, tmp_path)) for kind, file in files.items()}
+    works["plot.svg"] = lambda: run.plot("rod_forces", tmp_path / "plot.svg")
+    works["frame.png"] = lambda: run.frame(1.0, tmp_path / "frame.png")
+    before = signal.signal(signal.SIGALRM, stop)
+    try:
+        for file, work in works.items():
+            signal.setitimer(signal.ITIMER_REAL, 0.05)
+            with pytest.raises(KeyboardInterrupt):
+                work()
+            assert not (tmp_path / file).exists(), file
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert unfurl.Scene("pendulum", set={"solver.end_time": 0.1}).run().plot("energy").startswith("<?xml")  # and others go on
+
+
+def test_letters_that_no_font_has_are_warned_of(tmp_path):
+    run = unfurl.Scene("hoop6_sector", set={"solver.end_time": 0.1, "title": "\u6e2c\u8a66", "render.size": [320, 180]}).run()
+    for _ in range(2):  # of each picture that lacks them
+        with pytest.warns(RuntimeWarning, match="DejaVu Sans has no \u6e2c, \u8a66: pictures and figures show signs") as told:
+            run.frame(0.05, tmp_path / "frame.png")
+        assert [w.filename for w in told] == [__file__]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        run.plot("energy", tmp_path / "energy.svg")  # has all letters
+        unfurl.Scene("pendulum", set={"solver.end_time": 0.1, "render.size": [320, 180]}).run().frame(0.05, tmp_path / "frame.png")
+
+
 def test_a_study_is_that_of_the_program(tmp_path):
     asked = ["--steps", "0.08:0.02", "--methods", "rk4_projected", "--repeats", "1", "--set", "solver.end_time=0.8"]
     subprocess.run([PROGRAM, "study", "pendulum", "-o", tmp_path / "out", "--quiet", *asked], check=True)
