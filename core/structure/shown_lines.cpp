@@ -16,6 +16,36 @@ bool are_stages(const Constraint& constraint) {
 
 }  // namespace
 
+std::vector<CableSpan> cable_spans(const Structure& structure) {
+  std::vector<CableSpan> found;
+  std::vector<int> copy_of(structure.nodes.size(), -1);
+  for (std::size_t i = 0; i < structure.node_copies.size(); ++i)
+    if (int& copy = copy_of[static_cast<std::size_t>(structure.node_copies[i].source)]; copy < 0)
+      copy = static_cast<int>(i);
+  const auto add_span = [&](const Measure& length, CableSpan span) {
+    if (length.kind != MeasureKind::length) return;
+    span.line.a = copy_of[static_cast<std::size_t>(length.nodes[0])];
+    span.line.b = copy_of[static_cast<std::size_t>(length.nodes[1])];
+    if (span.line.a >= 0 && span.line.b >= 0) found.push_back(std::move(span));
+  };
+  const auto add = [&](const Measure& measure, CableSpan span) {
+    add_span(measure, span);
+    for (; span.term < measure.terms.size(); ++span.term) add_span(measure.terms[span.term].measure, span);
+  };
+  for (std::size_t k = 0; k < structure.forces.size(); ++k)
+    if (const Force& force = structure.forces[k]; force.kind == "cable")
+      add(force.measure, {{0, 0, force.smoothing > 0 ? "net" : "cable"}, static_cast<int>(k)});
+  for (std::size_t k = 0; k < structure.stops.size(); ++k)
+    if (const Stop& stop = structure.stops[k]; stop.reeled)
+      add(stop.measure, {{0, 0, "cable"}, -1, static_cast<int>(k)});
+  return found;
+}
+
+void show_cables(Structure& structure) {
+  structure.lines.clear();
+  for (CableSpan& span : cable_spans(structure)) structure.lines.push_back(std::move(span.line));
+}
+
 std::vector<std::pair<int, int>> stretches(const Measure& path) {
   std::vector<std::pair<int, int>> found;
   const auto add = [&](const Measure& m) {

@@ -149,28 +149,6 @@ void show_as_solved(Structure& structure) {
     if (load.shown) structure.load_copies.push_back({load.node, load.force});
 }
 
-void show_cables(Structure& structure) {
-  structure.lines.clear();
-  std::vector<int> copy_of(structure.nodes.size(), -1);
-  for (std::size_t i = 0; i < structure.node_copies.size(); ++i)
-    if (int& copy = copy_of[static_cast<std::size_t>(structure.node_copies[i].source)]; copy < 0)
-      copy = static_cast<int>(i);
-  const auto add_span = [&](const Measure& span, const char* group) {
-    if (span.kind != MeasureKind::length) return;
-    const int a = copy_of[static_cast<std::size_t>(span.nodes[0])],
-              b = copy_of[static_cast<std::size_t>(span.nodes[1])];
-    if (a >= 0 && b >= 0) structure.lines.push_back({a, b, group});
-  };
-  const auto add = [&](const Measure& measure, const char* group) {
-    add_span(measure, group);
-    for (const MeasureTerm& term : measure.terms) add_span(term.measure, group);
-  };
-  for (const Force& force : structure.forces)
-    if (force.kind == "cable") add(force.measure, force.smoothing > 0 ? "net" : "cable");
-  for (const Stop& stop : structure.stops)
-    if (stop.reeled) add(stop.measure, "cable");
-}
-
 double ReportedSurface::rms(const ConstVec& q) const {
   double mean = 0, sum = 0;
   const auto off = [&](int node) {

@@ -127,13 +127,14 @@ double FrameBuilder::prepare_camera(PosedMoments moments) {
     for (auto& pose : poses)
       add_dimension_ends(pose, 1.15 * dimension_gap * drawn_radius(shown_radius_, thickest));
   framing.aspect = static_cast<double>(style_.width) / style_.height;
-  if (const double inset = overlay_->inset_share(); inset > 0)
-    framing.margins.right = std::clamp(0.96 * inset, 0.27, 0.45);  // the least room is that of large pictures
+  const FrameOverlay::InsetRoom inset = overlay_->inset_room();
+  if (inset.right > 0) framing.margins.right = std::max(inset.right, 0.27);  // the least: of large pictures
   // Two lines at the left may stand beside what is in the middle; more, or of small pictures, may not, nor
   // beside dimension lines.
   const double beside = dimensions ? framing.margins.top : 0.16;
   if (const double heading = overlay_->heading_bottom(); heading > beside)
     framing.margins.top = std::min(heading, 0.4);
+  framing.margins.top = std::max(framing.margins.top, inset.top);
   framing.margins.bottom = std::clamp(overlay_->footing_top(), framing.margins.bottom, 0.3);
   const auto all = [&](const std::function<void(const Vec3&)>& visit) {
     for (const auto& pose : poses)
@@ -303,7 +304,7 @@ DrawList FrameBuilder::build(const Shot& shot, const Led& led) const {
   if (style_.options.follow && !at.empty()) aim(at, list);
   if (led) list.camera = led(list);
   add_bodies(inside, at, list);
-  add_lines(whole, list);
+  add_lines(inside, whole, list);
   if (style_.loads && style_.options.loads) add_loads(whole, list);
   add_ghosts(inside, list);
   add_trails(inside, whole, list);
@@ -371,23 +372,38 @@ Color FrameBuilder::rod_color(double t, const RodCopy& rod) const {
   return look_->group(static_cast<std::size_t>(looks_.rod_group[static_cast<std::size_t>(rod.source)]));
 }
 
-// Cables and nets: thinner than any rod, so that what they hang on shows.
-void FrameBuilder::add_lines(const VectorXd& whole, DrawList& list) const {
+Color FrameBuilder::line_color(double t, std::size_t line) const {
+  const std::string& group = trajectory_.structure().lines[line].group;
+  if (!field_ || field_->lines.cols() == 0) return look_->line_color(group, field_ && field_->diverging);
+  const double force = field_->of_line(t, line);
+  return force == 0 ? look_->slack_color() : field_->color(force);
+}
+
+// Cables and nets: thinner than any rod, so that what they hang on shows; where their colour tells a force,
+// so that it does.
+void FrameBuilder::add_lines(double t, const VectorXd& whole, DrawList& list) const {
+  const bool by_force = field_ && field_->lines.cols() > 0;
   double thinnest = 0.004 * shown_radius_;
   for (const double radius : looks_.rod_radius) thinnest = std::min(thinnest, radius);
-  for (const ShownLine& line : trajectory_.structure().lines) {
-    const bool net = line.group == "net";
+  const std::vector<ShownLine>& lines = trajectory_.structure().lines;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const ShownLine& line = lines[i];
+    const double share = line.group == "net" ? 0.2 : 0.4;
     list.tubes.push_back({node(whole, line.a).cast<float>(), node(whole, line.b).cast<float>(),
-                          static_cast<float>((net ? 0.2 : 0.4) * thinnest),
-                          look_->line_color(line.group, field_ && field_->diverging), Finish::paint});
+                          static_cast<float>((by_force ? 1.7 : 1) * share * thinnest), line_color(t, i),
+                          Finish::paint});
   }
 }
 
 void FrameBuilder::add_bodies(double t, const std::vector<Vec3>& at, DrawList& list) const {
-  std::vector<Color> colors;
+  std::vector<Color> colors, springs;
   if (field_)
     for (const RodCopy& rod : trajectory_.structure().rod_copies) colors.push_back(rod_color(t, rod));
-  hardware_->add(t, at, colors, list);
+  for (Index k = 0; field_ && k < field_->springs.cols(); ++k) {
+    const double force = field_->of_spring(t, static_cast<std::size_t>(k));
+    springs.push_back(std::isfinite(force) && force != 0 ? field_->color(force) : Color{0, 0, 0, 0});
+  }
+  hardware_->add(t, at, colors, springs, list);
   for (const ShownSurface& shown : style_.surfaces) {
     const std::vector<Vec3> edge = edge_of(shown, at);
     list.skins.push_back(skin_of(shown.surface, edge, shown.plan));

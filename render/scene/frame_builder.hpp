@@ -92,9 +92,10 @@ class FrameBuilder {
   void prepare_trails(const PosedMoments& moments);
   void thin_trails();
   Color rod_color(double t, const RodCopy& rod) const;
+  Color line_color(double t, std::size_t line) const;
   void prepare_hardware(const std::vector<std::vector<Vec3>>& poses, const std::vector<double>& times);
   void add_bodies(double t, const std::vector<Vec3>& at, DrawList& list) const;
-  void add_lines(const VectorXd& whole, DrawList& list) const;
+  void add_lines(double t, const VectorXd& whole, DrawList& list) const;
   void add_loads(const VectorXd& whole, DrawList& list) const;
   void add_ghosts(double t, DrawList& list) const;
   void add_trails(double t, const VectorXd& whole, DrawList& list) const;

@@ -24,10 +24,17 @@ bool of_rods(std::string_view column) {
 
 }  // namespace
 
-constexpr float inset_width = 330;  // in units
+constexpr float inset_width = 330, inset_height = 200;  // in units
 
-double FrameOverlay::inset_share() const {
-  return inset_ ? static_cast<double>((inset_width * unit_ + edge_) / width_) : 0;
+// Beside the structure, above it in pictures that are higher than wide, or as that one has no room; none
+// where neither has.
+FrameOverlay::InsetRoom FrameOverlay::inset_room() const {
+  if (!inset_) return {};
+  const double right = 0.96 * static_cast<double>((inset_width * unit_ + edge_) / width_),
+               top = static_cast<double>((inset_height * unit_ + 0.8f * edge_) / height_);
+  const bool beside = right <= 0.45, above = top <= 0.4 && inset_width * unit_ + 2 * edge_ <= width_;
+  if (above && (!beside || height_ > width_)) return {0, top};
+  return beside ? InsetRoom{right, 0} : InsetRoom{};
 }
 
 void FrameOverlay::prepare_inset() {
@@ -50,11 +57,12 @@ void FrameOverlay::prepare_inset() {
                      y = plot::axis_limits(panel, plot::AxisOf::y);
   panel.x.min = x.lo, panel.x.max = x.hi, panel.y.min = y.lo, panel.y.max = y.hi;
   inset_->panels.push_back(std::move(panel));
+  if (const InsetRoom room = inset_room(); room.right + room.top <= 0) inset_.reset();
 }
 
 void FrameOverlay::add_inset(double t, DrawList& list) const {
   if (!inset_) return;
-  const float wide = std::round(inset_width * unit_), high = std::round(200 * unit_);
+  const float wide = std::round(inset_width * unit_), high = std::round(inset_height * unit_);
   const double pixels_per_point = 1.75 * static_cast<double>(unit_);
   auto figure = std::make_shared<Figure>(*inset_);
   figure->width_mm = static_cast<double>(wide) / pixels_per_point / plot::points_per_mm;

@@ -94,7 +94,7 @@ FrameOverlay::Parts FrameOverlay::wanted() const {
   want(options.time, Part::status);
   want(!style_.title.empty() && options.title, Part::title);
   want(parts.contains(Part::title), Part::second_line);
-  want(options.legend && field_ && !trajectory_.structure().rod_copies.empty(), Part::color_bar);
+  want(options.legend && field_ && has_colors(), Part::color_bar);
   want(options.legend, Part::legend);
   want(inset_ != nullptr, Part::inset);
   want(options.legend, Part::thickness);
@@ -125,7 +125,7 @@ double FrameOverlay::heading_bottom() const {
 
 void FrameOverlay::add_key(double t, DrawList& list) const {
   Parts wanted{Part::thickness, Part::legend};
-  if (field_ && !trajectory_.structure().rod_copies.empty()) wanted.insert(Part::color_bar);
+  if (field_ && has_colors()) wanted.insert(Part::color_bar);
   write(t, {}, wanted, list);
 }
 
@@ -334,14 +334,24 @@ std::vector<FrameOverlay::LegendEntry> FrameOverlay::legend_entries(double t, co
     for (std::size_t i = 0; i < looks_.groups.size(); ++i) add(false, looks_.groups[i], look_.group(i));
   if (field_ && field_->known)
     if (std::ranges::any_of(trajectory_.structure().rod_copies,
-                            [&](const RodCopy& rod) { return !std::isfinite(field_->at(t, rod.source)); }))
+                            [&](const RodCopy& rod) { return !std::isfinite(field_->at(t, rod.source)); }) ||
+        field_->lines.hasNaN())
       add(false, field_->unknown, field_->color(std::nan("")));
+  // By their forces, as rods: then the colour that stands for none is named.
+  const bool by_force = field_ && field_->lines.cols() > 0;
   std::set<std::string> lines;
-  for (const ShownLine& line : trajectory_.structure().lines)
-    if (lines.insert(line.group).second)
-      add(false, line.group, look_.line_color(line.group, field_ && field_->diverging),
+  for (std::size_t i = 0; const ShownLine& line : trajectory_.structure().lines) {
+    const bool named = !by_force || (field_->lines.col(static_cast<Index>(i)).array() == 0).any();
+    ++i;
+    if (named && lines.insert(line.group).second)
+      add(false, line.group + (by_force ? ", slack" : ""),
+          by_force ? look_.slack_color() : look_.line_color(line.group, field_ && field_->diverging),
           line.group == "net" ? fine_ : std::max(2 * fine_, std::round(0.12f * small_)));
-  if (!list.arrows.empty()) add(true, "load", list.arrows.front().color);
+  }
+  const bool sized = style_.options.colour_by == "axial_force" && field_;
+  if (!list.arrows.empty())
+    add(true, sized ? "load, longest " + number_text(looks_.largest_force) + " N" : "load",
+        list.arrows.front().color);
   if (!style_.trails.empty()) add(false, "trail", trail_color(look_, looks_));
   return legend;
 }

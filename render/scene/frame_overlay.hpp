@@ -23,9 +23,13 @@ class FrameOverlay {
   void add(double t, const VectorXd& whole, DrawList& list) const;
   // Where what is written at the top ends, as a share of the picture's height; 0: nothing is.
   double heading_bottom() const;
-  // As much of it that time and scale bar take at the bottom, and of its width an inset at the right.
+  // As much of it that time and scale bar take at the bottom.
   double footing_top() const;
-  double inset_share() const;
+  // What an inset takes at the right of the structure, or above it, as shares of the picture; of the other 0.
+  struct InsetRoom {
+    double right = 0, top = 0;
+  };
+  InsetRoom inset_room() const;
   void add_key(double t, DrawList& list) const;  // what sizes, colours and signs of a picture stand for
   // Title, thickness and legend, as wanted, on a strip that is as wide as given and as high as they need;
   // returns that height, 0 where nothing is written [pixels].
@@ -77,6 +81,9 @@ class FrameOverlay {
   };
   void add_line_of_heading(Heading& heading, float size, const std::string& text, int most,
                            DrawList& list) const;
+  bool has_colors() const {  // something in the picture has those of the field
+    return !trajectory_.structure().rod_copies.empty() || field_->lines.cols() > 0;
+  }
   Parts wanted() const;
   // Everything that is wanted and has room.
   std::vector<Piece> write(double t, const VectorXd& whole, Parts wanted, DrawList& list) const;

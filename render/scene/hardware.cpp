@@ -336,10 +336,12 @@ void Hardware::add_payload(std::size_t n, const Vec3& at, DrawList& list) const 
 }
 
 // What pulls only is thin and straight; springs are wound.
-void Hardware::add_forces(const std::vector<Vec3>& at, DrawList& list) const {
+void Hardware::add_forces(const std::vector<Vec3>& at, const std::vector<Color>& colors,
+                          DrawList& list) const {
   if (!solved_whole_) return;
   const double thick = thickest();
-  for (const Force& force : structure_.forces) {
+  for (std::size_t i = 0; i < structure_.forces.size(); ++i) {
+    const Force& force = structure_.forces[i];
     if (force.kind != "spring" || force.measure.kind != MeasureKind::length ||
         force.measure.nodes.size() != 2)
       continue;
@@ -348,8 +350,13 @@ void Hardware::add_forces(const std::vector<Vec3>& at, DrawList& list) const {
     const double length = (b - a).norm();
     const auto thin = static_cast<float>(0.26 * thick);
     if (length <= 0) continue;
+    const bool own = !colors.empty() && colors[i].a > 0;
+    const auto add = [&](const Vec3& from, const Vec3& to, const Color& metal) {
+      list.tubes.push_back(
+          {f(from), f(to), thin, own ? colors[i] : metal, own ? Finish::paint : Finish::metal});
+    };
     if (force.one_sided || length < 12 * thick) {
-      list.tubes.push_back({f(a), f(b), thin, look_.joint, Finish::metal});
+      add(a, b, look_.joint);
       continue;
     }
     constexpr int turns = 12, parts = 10;
@@ -361,19 +368,19 @@ void Hardware::add_forces(const std::vector<Vec3>& at, DrawList& list) const {
           k > turns * parts
               ? b
               : Vec3(a + u * length * z + 1.6 * thick * (std::cos(angle) * x + std::sin(angle) * y));
-      list.tubes.push_back({f(last), f(next), thin, look_.fitting, Finish::metal});
+      add(last, next, look_.fitting);
       last = next;
     }
   }
 }
 
 void Hardware::add(double t, const std::vector<Vec3>& at, const std::vector<Color>& rod_colors,
-                   DrawList& list) const {
+                   const std::vector<Color>& spring_colors, DrawList& list) const {
   for (std::size_t i = 0; i < structure_.rod_copies.size(); ++i)
     add_rod(i, t, at, rod_colors.empty() ? nullptr : &rod_colors[i], list);
   for (std::size_t n = 0; n < looks_.joint_radius.size(); ++n) add_joint(n, t, at, list);
   add_crossings(t, at, list);
-  add_forces(at, list);
+  add_forces(at, spring_colors, list);
   add_drives(t, at, list);
 }
 

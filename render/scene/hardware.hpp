@@ -40,7 +40,9 @@ class Hardware {
            const std::vector<std::vector<Vec3>>& poses, const Mat3& upright, bool detailed);
 
   // The bodies at a time; `at`: the copied nodes' places, z up. rod_colors: per copied rod; empty: by group.
-  void add(double t, const std::vector<Vec3>& at, const std::vector<Color>& rod_colors, DrawList& list) const;
+  // spring_colors: per force of the structure, transparent: metal; empty: all are.
+  void add(double t, const std::vector<Vec3>& at, const std::vector<Color>& rod_colors,
+           const std::vector<Color>& spring_colors, DrawList& list) const;
   // Of a group in the picture and in its legend.
   Color group_color(std::size_t group) const;
   // How far below the lowest node a support reaches [m].
@@ -82,7 +84,7 @@ class Hardware {
   void add_crossings(double t, const std::vector<Vec3>& at, DrawList& list) const;
   void add_support(std::size_t node, const Vec3& at, DrawList& list) const;
   void add_payload(std::size_t node, const Vec3& at, DrawList& list) const;
-  void add_forces(const std::vector<Vec3>& at, DrawList& list) const;
+  void add_forces(const std::vector<Vec3>& at, const std::vector<Color>& colors, DrawList& list) const;
   bool cable(std::size_t rod) const { return cables_[rod]; }
   bool pulley(std::size_t node) const;                        // a cable runs over it
   bool seam(const RodEnd& end) const;                         // of two parts of one rod, which goes on there

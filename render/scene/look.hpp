@@ -43,6 +43,10 @@ struct Look {
     if (line == "net") return mixed(joint, ink, 0.5f);
     return diverging ? ink : load;
   }
+  // Of what is slack among lines in the colours of their forces: darker than the pale grey of none.
+  Color slack_color() const {
+    return ink.g > background_bottom.g ? mixed(joint, background_bottom, 0.35f) : ink;
+  }
 };
 
 std::span<const Look> looks();

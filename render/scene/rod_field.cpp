@@ -9,6 +9,7 @@
 #include "core/diagnostics/force_round_off.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/length_error.hpp"
+#include "core/diagnostics/line_forces.hpp"
 #include "core/diagnostics/rod_strength.hpp"
 #include "core/math/magnitudes.hpp"
 #include "render/scene/color_map.hpp"
@@ -54,8 +55,8 @@ double size_of_length_error(const VectorXd& q, const VectorXd&, const Rod& rod, 
 }
 
 // The run's own range.
-void choose_range(RodField& field) {
-  const auto [most, usual] = magnitudes(field.values);
+void choose_range(RodField& field, const MatrixXd& all) {
+  const auto [most, usual] = magnitudes(all);
   // Of nothing but zeros, or of nothing at all, any range will do.
   const double high = most > std::numeric_limits<double>::min() * 1e20 ? rounded_up(usual) : 1.0;
   field.high =
@@ -65,13 +66,13 @@ void choose_range(RodField& field) {
 
 }  // namespace
 
-double RodField::at(double time, int rod) const {
+double RodField::between(const MatrixXd& columns, double time, Index column) const {
   const auto after = std::upper_bound(t.begin(), t.end(), time);
-  if (after == t.begin()) return values(0, rod);
-  if (after == t.end()) return values(values.rows() - 1, rod);
+  if (after == t.begin()) return columns(0, column);
+  if (after == t.end()) return columns(columns.rows() - 1, column);
   const auto i = after - t.begin() - 1;
-  const double u = (time - *(after - 1)) / (*after - *(after - 1)), a = values(i, rod),
-               b = values(i + 1, rod);
+  const double u = (time - *(after - 1)) / (*after - *(after - 1)), a = columns(i, column),
+               b = columns(i + 1, column);
   // Up to a state at which it is not known, and from there on, it is what is known next to it.
   if (u == 0 || !std::isfinite(b)) return a;
   return std::isfinite(a) ? (1 - u) * a + u * b : b;
@@ -103,6 +104,8 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
     if (open > 0) field.label += "; " + std::to_string(open) + " of " + std::to_string(rods) + " not unique";
     field.values = without_round_off(run, diagnostics, diagnostics.axial_force);
     field.diverging = true;
+    LineForces others = line_forces(run, diagnostics);
+    field.lines = std::move(others.lines), field.springs = std::move(others.springs);
   } else if (by == "stress" || by == "buckling") {
     const Structure& structure = run.trajectory.structure();
     const bool stress = by == "stress";
@@ -127,12 +130,17 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
     throw std::invalid_argument("rod_field: no quantity '" + by + "'");
   }
   leave_hidden_out(run.trajectory.structure(), field.values);
-  field.known = (field.values.array().isFinite()).any();
-  choose_range(field);
+  MatrixXd all(field.values.rows(), field.values.cols() + field.lines.cols() + field.springs.cols());
+  if (field.lines.size() + field.springs.size() > 0)
+    all << field.values, field.lines, field.springs;
+  else
+    all = field.values;
+  field.known = all.array().isFinite().any();
+  choose_range(field, all);
   if (range[0] < range[1] && (!field.log || range[0] > 0)) field.low = range[0], field.high = range[1];
   const double hair = 1e-9 * (field.high - field.low), low_hair = field.log ? 1e-9 * field.low : hair;
-  for (Index i = 0; i < field.values.size(); ++i) {
-    const double value = field.values.data()[i];
+  for (Index i = 0; i < all.size(); ++i) {
+    const double value = all.data()[i];
     field.below = field.below || value < field.low - low_hair;
     field.above = field.above || value > field.high + hair;
   }
