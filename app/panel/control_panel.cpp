@@ -250,6 +250,9 @@ void ControlPanel::draw_right_pane(const plot::Rect& place) {
   pane("figures", ImGuiWindowFlags_AlwaysVerticalScrollbar, [&] {
     ui.cursors.clear();
     draw_right_tabs(ui, state());
+    const float compared =
+        draw_comparison(ui, state(), ImGui::GetCursorScreenPos(), ImGui::GetContentRegionAvail().x);
+    if (compared > 0) ImGui::Dummy({0, compared});
     timed(times_.figures, [&] {
       if (state().studies_open)
         draw_study_pane(ui, state(), cards_);

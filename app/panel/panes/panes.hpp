@@ -18,6 +18,10 @@ void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards);  // right
 void draw_study_pane(Ui& ui, PanelState& state, FigureCards& cards);   // right, other page
 void draw_right_tabs(Ui& ui, PanelState& state);                       // above either
 
+// The pinned run beside the present one, in a box at a place of the window that has so much room [pixels];
+// returns how high it is, 0: nothing is pinned.
+float draw_comparison(Ui& ui, const PanelState& state, const ImVec2& low, float room);
+
 struct PlacedFigure {  // a figure in the window
   ImVec2 origin;
   double scale;  // pixels per point

@@ -92,8 +92,11 @@ std::string shortened(const std::string& text, float width) {
   if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
   std::string kept = text;
   while (!kept.empty() && ImGui::CalcTextSize((kept + "\u2026").c_str()).x > width) {
-    do kept.pop_back();
-    while (!kept.empty() && (kept.back() & 0xC0) == 0x80);
+    bool within = true;  // a letter of several bytes
+    while (within && !kept.empty()) {
+      within = (kept.back() & 0xC0) == 0x80;
+      kept.pop_back();
+    }
   }
   while (!kept.empty() && kept.back() == ' ') kept.pop_back();
   return kept + "\u2026";

@@ -8,7 +8,6 @@
 
 #include "app/panel/document/build_edits.hpp"
 #include "app/panel/panes/panes.hpp"
-#include "app/panel/runs/comparison.hpp"
 #include "app/panel/view/film_camera.hpp"
 #include "core/diagnostics/diagnostics.hpp"
 #include "render/scene/view.hpp"
@@ -300,51 +299,6 @@ void draw_state_line(Ui& ui, const PanelState& state, const SceneView& view, con
   ui.places["state line"] = {at.x - pad, at.y - pad, at.x + wide + pad, end};
 }
 
-// A and B side by side, on the left below the title: the legend stands at the bottom.
-void draw_comparison(Ui& ui, const PanelState& state, const Frame& frame) {
-  if (!state.pinned) return;
-  const auto rows = compare(*state.pinned, *state.shown, point_of(state.trade, *state.pinned),
-                            point_of(state.trade, *state.shown));
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float line = ui.regular->FontSize + ui.px(3), pad = ui.px(10);
-  const ComparisonRow heading{"", "A (pinned)", "B (now)", "B/A"};
-  float columns[4] = {};
-  const auto widen = [&](const ComparisonRow& row) {
-    const std::string* cells[] = {&row.label, &row.a, &row.b, &row.change};
-    for (int i = 0; i < 4; ++i)
-      columns[i] = std::max(columns[i], ImGui::CalcTextSize(cells[i]->c_str()).x + ui.px(i < 3 ? 16 : 0));
-  };
-  widen(heading);
-  for (const ComparisonRow& row : rows) widen(row);
-  float width = 2 * pad;
-  for (const float column : columns) width += column;
-  const float over = std::max(0.0f, width - (frame.size.x - ui.px(20)));  // names give way
-  columns[0] -= std::min(over, columns[0] - ui.px(40));
-  width -= over;
-  const float height = 2 * pad + line * static_cast<float>(rows.size() + 1);
-  const ImVec2 low(frame.low.x + ui.px(10), static_cast<float>(ui.places.at("state line").y1) + ui.px(6));
-  list.AddRectFilled(low, {low.x + width, low.y + height}, ui.color(ui.theme.window, 0.92f), ui.px(6));
-  list.AddRect(low, {low.x + width, low.y + height}, ui.color(ui.theme.rule), ui.px(6));
-  float y = low.y + pad;
-  const auto draw = [&](const ComparisonRow& row, const ImVec4& ink_a, const ImVec4& ink_b) {
-    const std::pair<const std::string*, const ImVec4*> cells[] = {
-        {&row.label, &ui.theme.dim}, {&row.a, &ink_a}, {&row.b, &ink_b}, {&row.change, &ui.theme.text}};
-    float right = low.x + pad;
-    for (int i = 0; i < 4; ++i) {
-      right += columns[i];
-      const std::string text = i == 0 ? shortened(*cells[i].first, columns[0] - ui.px(6)) : *cells[i].first;
-      const float wide = ImGui::CalcTextSize(text.c_str()).x;
-      const float gap = i < 3 ? ui.px(16) : 0;
-      list.AddText({i == 0 ? right - columns[0] : right - wide - gap, y}, ui.color(*cells[i].second),
-                   text.c_str());
-    }
-    y += line;
-  };
-  draw(heading, ui.theme.curve_a, ui.theme.curve_b);
-  for (const ComparisonRow& row : rows) draw(row, ui.theme.text, ui.theme.text);
-  ui.places["comparison"] = {low.x, low.y, low.x + width, low.y + height};
-}
-
 void choose_preset(PanelState& state, const SceneView& view, ViewPreset preset) {
   const float aspect = static_cast<float>(view.width()) / static_cast<float>(std::max(1, view.height()));
   state.orbit = preset_view(preset, view.center(), view.radius(), aspect, view.framed().field_of_view);
@@ -488,7 +442,10 @@ void draw_view_pane(Ui& ui, PanelState& state, SceneView& view) {
   draw_readings(ui, state, view, frame);
   draw_state_line(ui, state, view, frame);
   mark_nodes(ui, state, view, frame);
-  draw_comparison(ui, state, frame);
+  if (!state.right_open)  // on the left below the title: the legend stands at the bottom
+    draw_comparison(ui, state,
+                    {frame.low.x + ui.px(10), static_cast<float>(ui.places.at("state line").y1) + ui.px(6)},
+                    frame.size.x - ui.px(20));
   draw_view_buttons(ui, state, view, frame);
   draw_tool(ui, state, frame);
   draw_pending(ui, state, frame);

@@ -195,6 +195,12 @@ TEST_CASE("a pinned run is compared with the present one") {
   driver.settle();
   CHECK(driver.panel().has_place("comparison"));
   CHECK(driver.state().pinned != driver.state().shown);
+  // Beside the view, in which the structure is; in it where the figures are not open.
+  CHECK(driver.panel().place("comparison").x0 > driver.panel().place("view").x1);
+  driver.state().right_open = false;
+  driver.frame();
+  CHECK(driver.panel().place("comparison").x1 < driver.panel().place("view").x1);
+  driver.state().right_open = true;
   // More force deploys sooner.
   REQUIRE(driver.state().shown->simulation.events.size() == 1);
   CHECK(driver.state().shown->simulation.events.at(0).t < driver.state().pinned->simulation.events.at(0).t);
