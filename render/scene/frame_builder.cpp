@@ -126,21 +126,14 @@ double FrameBuilder::prepare_camera(PosedMoments moments) {
   if (dimensions)
     for (auto& pose : poses)
       add_dimension_ends(pose, 1.15 * dimension_gap * drawn_radius(shown_radius_, thickest));
+  framing.parallel = style_.options.projection == "orthographic";
   framing.aspect = static_cast<double>(style_.width) / style_.height;
-  const FrameOverlay::InsetRoom inset = overlay_->inset_room();
-  if (inset.right > 0) framing.margins.right = std::max(inset.right, 0.27);  // the least: of large pictures
-  // Two lines at the left may stand beside what is in the middle; more, or of small pictures, may not, nor
-  // beside dimension lines.
-  const double beside = dimensions ? framing.margins.top : 0.16;
-  if (const double heading = overlay_->heading_bottom(); heading > beside)
-    framing.margins.top = std::min(heading, 0.4);
-  framing.margins.top = std::max(framing.margins.top, inset.top);
-  framing.margins.bottom = std::clamp(overlay_->footing_top(), framing.margins.bottom, 0.3);
   const auto all = [&](const std::function<void(const Vec3&)>& visit) {
     for (const auto& pose : poses)
       for (const Vec3& p : pose) visit(p);
   };
   const ViewAngles view = first_angles(style_.options, bounds_);
+  make_room(all, view, dimensions, framing);
   fitting_aspect_ = std::clamp(unfurl::fitting_aspect(all, view, framing), 0.4, 2.5);
   path_ = std::make_unique<CameraPath>(std::move(poses), std::move(times), bounds_, framing, style_.options);
   return thickest;

@@ -84,6 +84,8 @@ class FrameBuilder {
   void choose_origin(const std::vector<VectorXd>& poses);
   void bound(const std::vector<std::vector<Vec3>>& poses, const std::vector<double>& times);
   double prepare_camera(PosedMoments moments);  // returns the radius of the thickest joint [m]
+  // Margins for what is written in a picture of these points.
+  void make_room(const PointSource& points, const ViewAngles& view, bool dimensions, Framing& framing) const;
   // Of a sphere around what is drawn of nodes in one of that radius [m].
   double drawn_radius(double of_nodes, double thickest) const;
   void prepare_still(double thickest);

@@ -114,15 +114,6 @@ void FrameOverlay::add(double t, const VectorXd& whole, DrawList& list) const {
   add_names(whole, written, list);
 }
 
-double FrameOverlay::heading_bottom() const {
-  DrawList list;
-  add_heading(
-      trajectory_.start_time(), wanted(), [](Part) {}, list);
-  float bottom = 0;
-  for (const TextLabel& label : list.labels) bottom = std::max(bottom, label.y + label.height);
-  return static_cast<double>(bottom / height_);
-}
-
 void FrameOverlay::add_key(double t, DrawList& list) const {
   Parts wanted{Part::thickness, Part::legend};
   if (field_ && has_colors()) wanted.insert(Part::color_bar);
@@ -142,9 +133,11 @@ std::vector<FrameOverlay::Piece> FrameOverlay::write(double t, const VectorXd& w
   }
 }
 
+constexpr double bold = 1.12;  // of the bold face's width to that of the other
+
 FrameOverlay::Box FrameOverlay::box_of(const TextLabel& l) {
-  const auto wide =
-      static_cast<float>(plot::text_width(l.text, static_cast<double>(l.height) / plot::line_height));
+  const auto wide = static_cast<float>(
+      (l.bold ? bold : 1) * plot::text_width(l.text, static_cast<double>(l.height) / plot::line_height));
   const float x = l.x - l.align * wide;
   return {x, l.y, x + wide, l.y + l.height};
 }
@@ -216,7 +209,6 @@ TextLabel FrameOverlay::quiet(const DrawList& list, TextLabel label) const {
 void FrameOverlay::add_line_of_heading(Heading& heading, float size, const std::string& text, int most,
                                        DrawList& list) const {
   if (heading.room < 4 * size) return;  // of dots alone
-  constexpr double bold = 1.12;         // of the bold face's width to that of the other
   const bool title = size == large_;
   const double wide = static_cast<double>(size) / plot::line_height * (title ? bold : 1);
   const auto room = static_cast<double>(heading.room);
@@ -398,6 +390,7 @@ void FrameOverlay::add_legend(double t, Boxes& taken, DrawList& list) const {
     float right = width_ - edge_;
     for (const LegendEntry& entry : row.entries) {
       const float left = right - entry.width;
+      taken.push_back({left, row.y, right, row.y + small_});
       const TextLabel name = quiet(list, {right, row.y, small_, look_.ink, entry.name, 1});
       if (name.backing.a > 0)
         list.areas.push_back({left - room, row.y, right + room, row.y + small_, name.backing, room});

@@ -21,8 +21,16 @@ class FrameOverlay {
 
   // whole: the positions of all nodes at the time t.
   void add(double t, const VectorXd& whole, DrawList& list) const;
-  // Where what is written at the top ends, as a share of the picture's height; 0: nothing is.
-  double heading_bottom() const;
+  // What is written in the corners, as shares of the picture from there: at the top on the left, and legend
+  // and colours at the bottom on the right; 0: nothing is.
+  struct Corner {
+    double wide = 0, high = 0;
+  };
+  struct Words {
+    Corner heading, legend;
+    double status = 0;  // how high time and share of the deployment reach from the bottom
+  };
+  Words words(bool loads) const;
   // As much of it that time and scale bar take at the bottom.
   double footing_top() const;
   // What an inset takes at the right of the structure, or above it, as shares of the picture; of the other 0.

@@ -6,6 +6,7 @@
 #include "core/scene/build.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
+#include "render/plot/text_metrics.hpp"
 #include "render/scene/film_style.hpp"
 #include "render/scene/view.hpp"
 
@@ -113,6 +114,66 @@ TEST_CASE("dimension lines begin below the headings") {
       REQUIRE_FALSE(list.lines.empty());
       for (const OverlayLine& line : list.lines)
         CHECK(std::min(line.y0, line.y1) >= heading->y + heading->height);
+    }
+  }
+}
+
+TEST_CASE("no rod passes behind a heading or a legend") {
+  struct Shown {
+    const char *scene, *change;
+    int width, height;
+  };
+  for (const auto& [name, change, width, height] : {Shown{"pendulum", "render.zoom=1", 320, 180},
+                                                    {"double_pendulum", "render.follow=true", 320, 180},
+                                                    {"chain", "render.follow=true", 400, 300},
+                                                    {"hoberman", "render.orbit=90", 320, 180},
+                                                    {"hoberman", "render.zoom=1", 320, 180},
+                                                    {"reentrant_sheet", "render.camera=front", 400, 300},
+                                                    {"reentrant_sheet", "render.zoom=1", 400, 300}}) {
+    CAPTURE(name, change);
+    const Film film(name, {change, "solver.step=0.02"});
+    const FrameBuilder frames(film.run.trajectory, film.style(width, height));
+    float deep = 0;  // [pixels]
+    for (double u = 0; u <= 1; u += 0.0625) {
+      const DrawList list = frames.build(u * film.run.trajectory.end_time());
+      for (const TextLabel& label : list.labels) {
+        const auto wide = static_cast<float>(
+            plot::text_width(label.text, static_cast<double>(label.height) / plot::line_height));
+        const float x0 = label.x - label.align * wide;
+        for (const Tube& tube : list.tubes)
+          for (float along = 0; along <= 1; along += 0.0625f) {
+            const Vec3f p = project(list.camera, width, height, tube.a + along * (tube.b - tube.a));
+            deep = std::max(deep, std::min({p.x() - x0, x0 + wide - p.x(), p.y() - label.y,
+                                            label.y + label.height - p.y()}));
+          }
+      }
+    }
+    CHECK(deep < 1);
+  }
+}
+
+// As posters have them: a third as wide and half as high as a small picture.
+TEST_CASE("what is written above and within small poses leaves most of the picture to them") {
+  Film film("hoop6", {"solver.step=0.02"});
+  film.scene.render.legend = film.scene.render.title = false;
+  for (const auto& [width, height] : {std::pair{80, 67}, {66, 60}, {120, 90}, {53, 45}, {400, 360}}) {
+    CAPTURE(width);
+    const FrameBuilder frames(film.run.trajectory, film.style(width, height));
+    for (const int poses : {1, 3, 5}) {
+      const FrameBuilder::Banner banner = frames.banner(0, true, true, poses * width);
+      const auto title = static_cast<int>(std::ranges::count(banner.list.labels, true, &TextLabel::bold));
+      CHECK((title > 0 || poses * width < 110));  // of less room dots alone would be left
+      // One line of the title has its room in any.
+      if (title > 1 || banner.list.labels.size() > 1) CHECK(banner.height <= 0.7 * height);
+    }
+    if (width < 60) continue;  // words of five pixels and a pose have no room there
+    for (const double t : {0.0, 2.0, film.run.trajectory.end_time()}) {
+      const DrawList list = frames.build(t);
+      const TextLabel* words = ending(list, " s");
+      if (!words) words = ending(list, " %");
+      REQUIRE(words);
+      CHECK(deepest(list, width, height, 0, words->y, static_cast<float>(width), static_cast<float>(height)) <
+            1);
     }
   }
 }
