@@ -53,14 +53,15 @@ std::vector<int> nodes_at_rest(const Model& model, const VectorXd& resting, doub
   return out;
 }
 
-std::shared_ptr<const Model> model_with_held(const Model& model, const HeldNodes& held,
-                                             bool eliminate_linear) {
+std::shared_ptr<const Model> model_with_held(const Model& model, const HeldNodes& held, std::size_t first,
+                                             std::size_t end, bool eliminate_linear) {
   Structure structure = model.structure;
-  Index at = 0;
-  for (const int node : held.nodes)
+  for (std::size_t i = first; i < end; ++i)
     for (int k = 0; k < 3; ++k) {
+      const int node = held.nodes[i];
       const std::string name = "hold of " + structure.nodes[static_cast<std::size_t>(node)].name;
-      structure.constraints.push_back({"plane", name, {node}, {Vec3::Unit(k)}, held.places[at++], {}, {}});
+      const double place = held.places[3 * static_cast<Index>(i) + k];
+      structure.constraints.push_back({"plane", name, {node}, {Vec3::Unit(k)}, place, {}, {}});
     }
   System system(structure, eliminate_linear);
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});

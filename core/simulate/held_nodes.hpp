@@ -12,7 +12,8 @@ namespace unfurl {
 // have lost rank there.
 struct HeldNodes {
   std::vector<int> nodes;
-  VectorXd places;  // x, y and z of each
+  VectorXd places;                       // x, y and z of each
+  std::size_t by_base = 0, latched = 0;  // so many of them by the base, and before a latch has closed
 };
 
 // 1 of the solved coordinates that nothing joins to a prescribed motion which is not at rest at the time t.
@@ -25,8 +26,8 @@ bool comes_to_rest(const System& system, const VectorXd& resting, double t, doub
 // prescribed of these changes behind the time t, in steps of h.
 std::vector<int> nodes_at_rest(const Model& model, const VectorXd& resting, double t, double h);
 
-// The model with nodes held in their places.
-std::shared_ptr<const Model> model_with_held(const Model& model, const HeldNodes& held,
-                                             bool eliminate_linear);
+// The model with some of the nodes held in their places.
+std::shared_ptr<const Model> model_with_held(const Model& model, const HeldNodes& held, std::size_t first,
+                                             std::size_t end, bool eliminate_linear);
 
 }  // namespace unfurl

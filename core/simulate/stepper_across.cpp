@@ -18,8 +18,8 @@
 namespace unfurl {
 namespace {
 
-constexpr int before_it = 8, behind_it = 6;  // states on both sides
-constexpr double lost_rank = 1e-10;          // the square of a singular value
+constexpr int before_it = 8, behind_it = 6, before_rest = 12;  // states on both sides, or before alone
+constexpr double lost_rank = 1e-10;                            // the square of a singular value
 
 // How weakly rows hold a pose.
 class WeakRows {
@@ -47,10 +47,11 @@ class WeakRows {
 };
 
 // To times around t, none nearer than half of what they are `apart`, as far as they are clear of the start.
-std::vector<double> lengths_around(double t, double apart, double from, double until) {
+std::vector<double> lengths_around(double t, double apart, double from, double until,
+                                   int before = before_it) {
   constexpr double clear = 0.3;
   std::vector<double> lengths;
-  for (int k = -before_it;; ++k) {
+  for (int k = -before;; ++k) {
     const double length = t + (k + 0.5) * apart - from;
     if (k >= behind_it && from + length > until) return lengths;
     if (length > clear * apart) lengths.push_back(length);
@@ -155,17 +156,17 @@ std::size_t Stepper::Loop::led_since() const {
 // to it, but for what was before `first`.
 State Stepper::Loop::clear_of(double t, std::size_t first) const {
   constexpr double clear = 0.02 * 0.02;  // the square of a singular value
-  constexpr double longest = 60;         // steps
+  const double longest = std::max(60 * run_.options.step, 15 * (t - now().t));
   const double step = run_.options.step;
   WeakRows rows(system());
   std::size_t i = run_.trajectory.size() - 1;
   while (i > first && t - run_.trajectory.time(i) < 0.99 * step) --i;
   State state = in_last_model(run_.trajectory, i);
   double pivot = rows.pivot(state, clear);
-  while (i > first && pivot < clear && t - run_.trajectory.time(i) < longest * step) {
+  while (i > first && pivot < clear && t - run_.trajectory.time(i) < longest) {
     State before = in_last_model(run_.trajectory, i - 1);
     const double next = rows.pivot(before, clear);
-    if (!(next > pivot)) break;
+    if (!(next >= pivot)) break;  // two states of an impact have the same
     pivot = next, --i;
     state = std::move(before);
   }
@@ -197,56 +198,65 @@ bool Stepper::Loop::time_ends_in_pose(const Probe& to) const {
 // smooth, with what is free beside it as it goes on from the present state; or of all of it. From states
 // before the pose alone where it is not gone through.
 std::optional<AroundPose> Stepper::Loop::around_pose(double t, bool led, Samples samples) const {
-  constexpr double shortest = 0.1;                  // of a step
-  constexpr double settled = 1e-8, to_rest = 1e-6;  // of the structure's size
-  const bool through = samples == Samples::around;
+  constexpr double shortest = 0.1;                                  // of a step
+  constexpr double settled = 1e-8, to_rest = 1e-6, enough = 1e-11;  // of the structure's size
+  const bool through = samples == Samples::around, rests = samples == Samples::to_rest;
   const double step = run_.options.step;
   const State from = clear_of(t, led ? led_since() : smooth_since());
   if (!(t - from.t > shortest * step)) return {};
   std::vector<Index> free;
   if (led) free = free_coordinates(system(), from);
   if (std::ssize(free) == system().solved_coordinates()) return {};
-  const double apart = (t - from.t) / before_it;
   const std::shared_ptr<const Model> smooth = smooth_model(now().t);
   const auto integrator = fresh_integrator(*find_method(run_.options.method), smooth->system);
-  std::vector<double> lengths = lengths_around(t, apart, from.t, 0);
-  if (!through) std::erase_if(lengths, [&](double length) { return from.t + length > t; });
-  AroundPose out{smooth, {from, lengths, steps_of(*integrator, step)}, free, apart, {}, led};
-  const AcrossPose& across = out.across;
-  State &there = out.there, fewer;
-  const auto moved = [&](State& state) { return across.move_free(smooth->system, free, now(), state); };
-  const auto as_there = [&](State& state) {
-    state.z(free) = there.z(free), state.w(free) = there.w(free);
-    return true;
-  };
-  if (!across.at(system(), t, there, moved, !through)) return {};
-  // But for where others lie beside another pose, or at a dead centre, to which rods turn by the root of the
-  // way that is left.
-  if (!across.at(system(), t, fewer, as_there, !through, 7)) return {};
-  const double size = reference_length(base_->structure), off = (there.z - fewer.z).lpNorm<Eigen::Infinity>(),
-               off_rate = step * (there.w - fewer.w).lpNorm<Eigen::Infinity>();
-  if (!(samples == Samples::to_rest ? off <= to_rest * size : std::max(off, off_rate) <= settled * size))
-    return {};
+  const double size = reference_length(base_->structure);
+  double least = (rests ? to_rest : settled) * size;
+  std::optional<AroundPose> best;
+  for (const double share : {1.0, 0.87, 0.73, 0.61, 0.5, 0.42, 0.36, 0.3, 0.25}) {
+    if (share < 1 && !rests) break;
+    const int before = rests ? before_rest : before_it;
+    const double apart = share * (t - from.t) / before;
+    std::vector<double> lengths = lengths_around(t, apart, from.t, 0, before);
+    const double last = rests ? t - apart : t;  // a nearer one has too few digits
+    if (!through) std::erase_if(lengths, [&](double length) { return from.t + length > last; });
+    AroundPose out{smooth, {from, lengths, steps_of(*integrator, step)}, free, apart, {}, led};
+    const AcrossPose& across = out.across;
+    State &there = out.there, fewer;
+    const auto moved = [&](State& state) { return across.move_free(smooth->system, free, now(), state); };
+    const auto as_there = [&](State& state) {
+      state.z(free) = there.z(free), state.w(free) = there.w(free);
+      return true;
+    };
+    if (!across.at(system(), t, there, moved, !through, rests ? 12 : 9)) continue;
+    // But for where others lie beside another pose, or at a dead centre, to which rods turn by the root of
+    // the way that is left.
+    if (!across.at(system(), t, fewer, as_there, !through, rests ? 10 : 7)) continue;
+    double off = (there.z - fewer.z).lpNorm<Eigen::Infinity>();
+    if (!rests) off = std::max(off, step * (there.w - fewer.w).lpNorm<Eigen::Infinity>());
+    if (off <= least) least = off, best = std::move(out);
+    if (least <= enough * size) break;
+  }
+  if (!best) return best;
   if (!free.empty()) {
     FreeMotion motion(system(), free);
-    if (motion.rows_below(there, lost_rank) > motion.rows_below(from, lost_rank)) return {};
+    if (motion.rows_below(best->there, lost_rank) > motion.rows_below(from, lost_rank)) return {};
   }
-  if (system().followed_angles() > 0) system().at(now()).count_on(there);
-  return out;
+  if (system().followed_angles() > 0) system().at(now()).count_on(best->there);
+  return best;
 }
 
 // As time has an edge in that pose, or the run its end: a step to it says nothing of the weak modes, and no
 // step sets out from it. But what leads there passes the pose as smoothly as if nothing began or ended in it;
 // so does what leads out of it, if it had come from before.
-bool Stepper::Loop::end_in_pose(Probe& to, double h, const VectorXd& lambda) {
+std::optional<AroundPose> Stepper::Loop::end_in_pose(Probe& to, double h, const VectorXd& lambda) {
   const double t = now().t + h;
-  const VectorXd rests = deployment_.empty() && held_.places.size() == 0 ? find_resting(t) : VectorXd();
-  const bool slows = rests.size() > 0 && !held_.nodes.empty();
+  const VectorXd rests = resting_.empty() ? find_resting(t) : VectorXd();
+  const bool slows = rests.size() > 0 && !resting_.empty();
   std::optional<AroundPose> around;
   if (!slows) around = around_pose(t, true, Samples::around);
   if (!around) around = around_pose(t, true, slows ? Samples::to_rest : Samples::before);
   if (!around) around = around_pose(t, false, slows ? Samples::to_rest : Samples::around);
-  if (!around) return false;
+  if (!around) return {};
   State& there = around->there;
   if (slows) there.w = (rests.array() > 0).select(0.0, there.w);
   there.lambda = lambda.size() > 0
@@ -264,26 +274,69 @@ bool Stepper::Loop::end_in_pose(Probe& to, double h, const VectorXd& lambda) {
   in_pose_ = std::move(pose);
   to.at = h, to.state = std::move(there), to.report = {.singular_event = true};
   integrator_->restart();
+  return around;
+}
+
+// So near a flat pose in which drives come to rest for good steps are of rounding: it is gone there at once.
+bool Stepper::Loop::goes_flat(Probe& to, double& h) {
+  constexpr double soon = 1e-2, still = 1e-9;  // [m] of a drive's row, in all and in a step
+  constexpr double near = stepping::singular_margin * stepping::singular_margin, flat = 1e-13;
+  const double edge = next_prescribed_edge(run_.trajectory);
+  if (!(edge <= until_) || in_pose(now().t)) return false;
+  const double end = grid_.next(now().t, 2 * (edge - now().t)).t;
+  if (!same_instant(end, edge)) return false;
+  const bool slows = std::ranges::any_of(system().drives(), [&](const Drive& drive) {
+    const double left = drive.scale * std::abs(drive.target(edge) - drive.target(now().t));
+    return 0 < left && left < soon &&
+           drive.scale * std::abs(drive.target.derivative(1, edge)) * run_.options.step <= still;
+  });
+  if (!slows) return false;
+  WeakRows rows(system());
+  const State clear = clear_of(edge, led_since());
+  const auto is_near = [&](const State& state, double bound) {
+    return rows.below(state, bound) > rows.below(clear, bound);
+  };
+  if (to.report.ok() && !to.report.weak_end && !is_near(to.state, near)) return false;
+  Probe there{.state = now()};
+  std::optional<AroundPose> around = end_in_pose(there, end - now().t);
+  const bool other =
+      around && !deployed_ && !deployment_.empty() && (crosses(there.state) || fold(there.state) <= margin_);
+  if (!around || other || resting_.empty() || !is_near(there.state, flat))
+    return in_pose_.reset(), resting_.clear(), false;
+  led_way_ = [this, end = there.state, way = std::make_shared<AroundPose>(std::move(*around))](double t) {
+    const AcrossPose& across = way->across;
+    const System& smooth = way->smooth->system;
+    State out;
+    const auto moved = [&](State& state) { return across.move_free(smooth, way->free, now(), state); };
+    if (!across.at(smooth, t, out, moved, across.solved().back().t < t)) return on_cubic(now(), end, t);
+    if (system().followed_angles() > 0) system().at(now()).count_on(out);
+    VectorXd acceleration(out.w.size());
+    System followed = system();
+    followed.follow(out);
+    Index1(followed, true).evaluate(out, acceleration, out.lambda);
+    return out;
+  };
+  part_end_ = end, h = there.at, to = std::move(there);
   return true;
 }
 
 // What drives alone lead and have brought to rest at a time, for good, is held from then on. Its coordinates.
 VectorXd Stepper::Loop::find_resting(double t) {
   const double edge = next_prescribed_edge(run_.trajectory), h = run_.options.step;
-  held_ = {};
   if (!same_instant(t, edge)) return {};
   const State from = clear_of(edge, led_since());
   VectorXd rests = resting_coordinates(system(), edge, h);
   rests(free_coordinates(system(), from)).setZero();
   if (!comes_to_rest(system(), rests, 0.5 * (from.t + edge), h)) return {};
-  held_.nodes = nodes_at_rest(model(), rests, edge, h);
+  resting_ = nodes_at_rest(model(), rests, edge, h);
+  std::erase_if(resting_, [this](int node) { return std::ranges::count(held_.nodes, node) > 0; });
   return rests;
 }
 void Stepper::Loop::rest_in_pose() {
-  if (held_.nodes.empty() || held_.places.size() > 0) return;
+  if (resting_.empty()) return;
   // Something else may pass such a pose of its own then.
   VectorXd nodes = VectorXd::Zero(system().coordinates()), held(now().z.size());
-  for (const int node : held_.nodes) nodes.segment<3>(3 * node).setOnes();
+  for (const int node : resting_) nodes.segment<3>(3 * node).setOnes();
   system().reduce_sizes(nodes, held);
   std::vector<Index> others;
   for (Index i = 0; i < held.size(); ++i)
@@ -293,9 +346,10 @@ void Stepper::Loop::rest_in_pose() {
   if (in_pose(now().t)) before.z = system().reduce(in_pose_->q);
   const bool passes = motion.rows_below(now(), lost_rank) > motion.rows_below(before, lost_rank);
   if (!passes) in_pose_.reset();
+  const std::size_t by_base = held_.by_base;
   hold_deployed();
-  if (passes && !holds_) hold_nodes();
-  if (holds_) enter_held();
+  if (passes || std::isfinite(next_prescribed_edge(run_.trajectory))) hold_nodes(held_.nodes.size());
+  if (held_.by_base > by_base) enter_held();
 }
 
 // The motion that goes on from a state in that pose, by what acts behind it.
@@ -342,6 +396,10 @@ bool Stepper::Loop::find_behind(const State& there) {
   }
   if (!(least <= at_all * size)) behind_.reset();
   return behind_.has_value();
+}
+
+bool Stepper::Loop::in_pose(double t) const {
+  return in_pose_ && same_instant(std::min(in_pose_->t, t), std::max(in_pose_->t, t));
 }
 
 // A step out of it may end in it still: there the motion behind it goes on.

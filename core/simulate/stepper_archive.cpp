@@ -89,13 +89,16 @@ void Stepper::Loop::archive_models(Archive& archive) {
   archive(latched_);
   archive(locked_sides_);
   archive(locked_at_);
+  archive_held(archive);
+  const std::size_t held = held_.by_base;
+  if (archive.reading()) held_.by_base = 0, hold_nodes(held_.latched);
   if (archive.reading() && !locked_sides_.empty()) {
     Archive sides(locked_sides_);
     sides_.archive(sides);
     base_ = sides_.lock_held(*base_, locked_at_);
   }
   if (archive.reading() && latched_) base_ = latched_model(*base_, run_.options.eliminate_linear);
-  archive_held(archive);
+  if (archive.reading()) hold_nodes(held);
   sides_.archive(archive);
   if (!archive.reading() || !changed) return;
   present_ = sides_.any_active() ? sides_.model(*base_) : base_;

@@ -193,12 +193,12 @@ std::optional<State> Stepper::Loop::locate_led(double guess, double h) {
       h = std::max(h, before);
   auto led = locate_driven(
       run_.trajectory, [this] { return fresh_integrator(); }, guess, h);
-  held_ = {}, led_way_ = nullptr, rest_ahead_ = false;
+  resting_.clear(), led_way_ = nullptr, rest_ahead_ = false;
   if (!led) return std::nullopt;
   led_off_ = led->error;
-  held_.nodes = std::move(led->held);
+  resting_ = std::move(led->held);
   led_way_ = std::move(led->before);
-  rest_ahead_ = led_way_ && (run_.options.at_deployed != "pass" || !held_.nodes.empty());
+  rest_ahead_ = led_way_ && (run_.options.at_deployed != "pass" || !resting_.empty());
   return std::move(led->state);
 }
 
@@ -308,7 +308,7 @@ bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<Stat
   if (leads() && !regular_when_deployed(run_.trajectory, to.state)) {
     event = locate_led(part_end_, h);
     if (!event) led_off_ = std::numeric_limits<double>::infinity();
-    if (run_.options.at_deployed == "pass" && held_.nodes.empty()) event.reset();
+    if (run_.options.at_deployed == "pass" && resting_.empty()) event.reset();
   }
   regular_ = !event;
   if (event) return true;
@@ -321,7 +321,6 @@ bool Stepper::Loop::rests_deployed(const Probe& to, double h, std::optional<Stat
 // where the run ends.
 bool Stepper::Loop::find_deployed(Probe& to, double& h, std::optional<State>& event) {
   led_off_ = 0;
-  if (!deployed_ && !deployment_.empty()) held_ = {}, led_way_ = nullptr;
   if (rest_ahead_ && !deployed_ && goes_to_rest(h, event)) return true;
   if (!to.report.ok() && may_cross(1.5 * h) && !leads()) event = locate(h, now().t + 1.05 * h);
   if (!event && !to.report.ok()) {
@@ -425,7 +424,7 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
                   "solver.at_deployed = \"stop\"");
     run_.warnings.push_back("at t = " + seconds(event.t) + ": the structure " + how);
   }
-  if (run_.options.at_deployed == "pass" && held_.nodes.empty()) {
+  if (run_.options.at_deployed == "pass" && resting_.empty()) {
     const bool in_it = time_ends_in_pose(to) || (!regular_ && std::abs(fold(to.state)) < margin_);
     if ((!to.report.ok() || in_it) && !step_over(to, h))
       end_in_pose(to, h, regular_ ? VectorXd() : event.lambda);
@@ -470,7 +469,8 @@ bool Stepper::Loop::latch() {
     return fail("a latch that gives cannot hold this deployed pose, in which the constraints lose rank");
   base_ = latched_model(*base_, run_.options.eliminate_linear);
   latched_ = true;
-  if (!held_.nodes.empty()) hold_deployed();
+  held_.latched = held_.by_base;
+  if (!resting_.empty()) hold_deployed();
   const Handover locked = hand_over(model(), now(), *base_);
   ModeChange change{.state = locked.state};
   if (!sides_.empty()) change = modes_after(change.state);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A run that goes on from a flat pose in which its drives have come to rest.
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include "core/constraints/linear_rows.hpp"
 #include "core/simulate/stepper_loop.hpp"
@@ -11,14 +13,16 @@ namespace unfurl {
 void Stepper::Loop::hold_deployed() {
   q_.resize(system().coordinates());
   system().expand(now().z, q_);
-  held_.places.resize(3 * std::ssize(held_.nodes));
-  for (std::size_t i = 0; i < held_.nodes.size(); ++i)
-    held_.places.segment<3>(3 * static_cast<Index>(i)) = q_.segment<3>(3 * held_.nodes[i]);
-  if (!now().lambda.allFinite()) hold_nodes();
+  std::ranges::copy(std::exchange(resting_, {}), std::back_inserter(held_.nodes));
+  Index at = held_.places.size();
+  held_.places.conservativeResize(3 * std::ssize(held_.nodes));
+  for (; at < held_.places.size(); at += 3)
+    held_.places.segment<3>(at) = q_.segment<3>(3 * held_.nodes[static_cast<std::size_t>(at) / 3]);
+  if (!now().lambda.allFinite()) hold_nodes(held_.nodes.size());
 }
-void Stepper::Loop::hold_nodes() {
-  holds_ = true;
-  base_ = model_with_held(*base_, held_, run_.options.eliminate_linear);
+void Stepper::Loop::hold_nodes(std::size_t end) {
+  const std::size_t first = std::exchange(held_.by_base, end);
+  if (first < end) base_ = model_with_held(*base_, held_, first, end, run_.options.eliminate_linear);
 }
 void Stepper::Loop::enter_held() {
   set_model(sides_.any_active() ? sides_.model(*base_) : base_, in_base(now()), true);
@@ -28,8 +32,8 @@ void Stepper::Loop::enter_held() {
 // the step cannot be solved: then nodes are held.
 bool Stepper::Loop::gives_way(Probe& to) {
   constexpr double rounding = 1e-6;  // of the structure, in a step
-  if (holds_ || held_.places.size() == 0) return false;
-  const auto give_way = [this] { return hold_nodes(), enter_held(), true; };
+  if (held_.by_base == held_.nodes.size()) return false;
+  const auto give_way = [this] { return hold_nodes(held_.nodes.size()), enter_held(), true; };
   if (!to.report.ok()) return give_way();
   VectorXd q(system().coordinates()), v(q.size());
   system().expand(to.state.z, q);
@@ -54,8 +58,7 @@ void Stepper::Loop::archive_held(Archive& archive) {
   held_.nodes.resize(n);
   for (int& node : held_.nodes) archive(node);
   archive(held_.places);
-  archive(holds_);
-  if (archive.reading() && holds_) base_ = model_with_held(*base_, held_, run_.options.eliminate_linear);
+  for (std::size_t* x : {&held_.by_base, &held_.latched}) archive(*x);
 }
 
 }  // namespace unfurl

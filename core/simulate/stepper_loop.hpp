@@ -165,6 +165,7 @@ class Stepper::Loop {
   bool part(double h) {
     if (watched())
       if (const std::vector<std::size_t> over = passed(); !over.empty()) return act(over);
+    resting_.clear(), led_way_ = nullptr;
     Probe to{.at = h, .state = now()};
     to.report = take_step(*integrator_, to.state, h);
     const bool beside = stays_beside(to);
@@ -174,16 +175,17 @@ class Stepper::Loop {
     if (to.report.weak_end) settle_in_pose(to, h);
     std::optional<State> event;
     if (!find_deployed(to, h, event)) return false;
-    const bool poses = !event && (!to.report.ok() || (!beside && time_ends_in_pose(to)));
+    const bool flat = !event && !beside && goes_flat(to, h);
+    const bool poses = !event && !flat && (!to.report.ok() || (!beside && time_ends_in_pose(to)));
     if (poses && !step_over(to, h)) end_in_pose(to, h);
-    if (!event && (poses || !solved)) stays_beside(to);
+    if (!event && !flat && (poses || !solved)) stays_beside(to);
     if (lost_side_) return true;
     if (watched() && (event || to.report.ok())) {
-      Probe flat;
+      Probe past;
       const bool short_of = event && (led_way_ || !to.report.ok() || event->t > now().t + to.at);
-      if (!event) led_way_ = nullptr;
-      if (short_of) flat = beyond(to, *event);
-      auto crossing = find_crossing(short_of ? flat : to, h);
+      if (!event && !flat) led_way_ = nullptr;
+      if (short_of) past = beyond(to, *event);
+      auto crossing = find_crossing(short_of ? past : to, h);
       if (crossing && (!event || side(*crossing, *event, h) < 0)) return go_to(std::move(*crossing));
     }
     if (event) return deployed(*event, to, h);
@@ -420,7 +422,7 @@ class Stepper::Loop {
   bool deployed(State& event, Probe& to, double h);
   bool latch();
   void hold_deployed();
-  void hold_nodes();
+  void hold_nodes(std::size_t end);
   void enter_held();
   bool gives_way(Probe& to);
   bool stays_beside(Probe& to);
@@ -431,10 +433,9 @@ class Stepper::Loop {
   bool time_ends_in_pose(const Probe& to) const;
   enum class Samples { around, before, to_rest };
   std::optional<AroundPose> around_pose(double t, bool led, Samples samples) const;
-  bool end_in_pose(Probe& to, double h, const VectorXd& lambda = {});
-  bool in_pose(double t) const {
-    return in_pose_ && same_instant(std::min(in_pose_->t, t), std::max(in_pose_->t, t));
-  }
+  std::optional<AroundPose> end_in_pose(Probe& to, double h, const VectorXd& lambda = {});
+  bool goes_flat(Probe& to, double& h);
+  bool in_pose(double t) const;
   bool stays_in_pose(Probe& to);
   VectorXd find_resting(double t);
   void rest_in_pose();
@@ -477,13 +478,13 @@ class Stepper::Loop {
   std::optional<Pushed> pushed_;
   double crowd_time_ = -std::numeric_limits<double>::infinity(), unwatched_until_ = crowd_time_;
   long crowd_ = 0, in_step_ = 0;  // switches at crowd_time_, and in the present step
-  bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false, holds_ = false,
-       rest_ahead_ = false;
+  bool deployed_ = false, ended_ = false, regular_ = false, touched_ = false, rest_ahead_ = false;
   bool contradictions_ = false;                // told by a step's report
   double margin_ = stepping::singular_margin;  // a tenth of where the run began, if that is less
   const System* asked_ = nullptr;              // whose drives
   bool leads_ = false;                         // lead to the deployed pose
-  HeldNodes held_;                             // by drives, for good; holds_: by the base, too
+  HeldNodes held_;                             // by drives, for good
+  std::vector<int> resting_;                   // nodes to be held in the pose at the end of this step
   std::function<State(double t)> led_way_;  // of the present step, to where drives come to rest in the pose
   double led_off_ = 0;                      // by how much the state there may be off [m]
   VectorXd q_;
