@@ -46,6 +46,7 @@ struct AroundPose {
   double apart;  // [s]
   State there;
   bool led;
+  double off = 0;  // by how much its last degrees change it [m]
 };
 struct BehindPose {
   AcrossPose across;

@@ -20,6 +20,7 @@ namespace {
 
 constexpr int before_it = 8, behind_it = 6, before_rest = 12;  // states on both sides, or before alone
 constexpr double lost_rank = 1e-10;                            // the square of a singular value
+constexpr double settled = 1e-8;                               // of the structure's size
 
 // How weakly rows hold a pose.
 class WeakRows {
@@ -198,8 +199,8 @@ bool Stepper::Loop::time_ends_in_pose(const Probe& to) const {
 // smooth, with what is free beside it as it goes on from the present state; or of all of it. From states
 // before the pose alone where it is not gone through.
 std::optional<AroundPose> Stepper::Loop::around_pose(double t, bool led, Samples samples) const {
-  constexpr double shortest = 0.1;                                  // of a step
-  constexpr double settled = 1e-8, to_rest = 1e-6, enough = 1e-11;  // of the structure's size
+  constexpr double shortest = 0.1;                  // of a step
+  constexpr double to_rest = 1e-6, enough = 1e-11;  // of the structure's size
   const bool through = samples == Samples::around, rests = samples == Samples::to_rest;
   const double step = run_.options.step;
   const State from = clear_of(t, led ? led_since() : smooth_since());
@@ -233,7 +234,7 @@ std::optional<AroundPose> Stepper::Loop::around_pose(double t, bool led, Samples
     if (!across.at(system(), t, fewer, as_there, !through, rests ? 10 : 7)) continue;
     double off = (there.z - fewer.z).lpNorm<Eigen::Infinity>();
     if (!rests) off = std::max(off, step * (there.w - fewer.w).lpNorm<Eigen::Infinity>());
-    if (off <= least) least = off, best = std::move(out);
+    if (off <= least) least = out.off = off, best = std::move(out);
     if (least <= enough * size) break;
   }
   if (!best) return best;
@@ -296,12 +297,14 @@ bool Stepper::Loop::goes_flat(Probe& to, double& h) {
   const auto is_near = [&](const State& state, double bound) {
     return rows.below(state, bound) > rows.below(clear, bound);
   };
-  if (to.report.ok() && !to.report.weak_end && !is_near(to.state, near)) return false;
+  const bool solved = to.report.ok() && !to.report.weak_end, again = in_pose_ && in_pose_->t > now().t;
+  if (solved && (!is_near(to.state, near) || (!again && is_near(now(), near)))) return false;
   Probe there{.state = now()};
   std::optional<AroundPose> around = end_in_pose(there, end - now().t);
   const bool other =
       around && !deployed_ && !deployment_.empty() && (crosses(there.state) || fold(there.state) <= margin_);
-  if (!around || other || resting_.empty() || !is_near(there.state, flat))
+  const double most = settled * reference_length(base_->structure);
+  if (!around || other || (solved && around->off > most) || resting_.empty() || !is_near(there.state, flat))
     return in_pose_.reset(), resting_.clear(), false;
   led_way_ = [this, end = there.state, way = std::make_shared<AroundPose>(std::move(*around))](double t) {
     const AcrossPose& across = way->across;
