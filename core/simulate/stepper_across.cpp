@@ -282,29 +282,25 @@ std::optional<AroundPose> Stepper::Loop::end_in_pose(Probe& to, double h, const 
 bool Stepper::Loop::goes_flat(Probe& to, double& h) {
   constexpr double soon = 1e-2, still = 1e-9;  // [m] of a drive's row, in all and in a step
   constexpr double near = stepping::singular_margin * stepping::singular_margin, flat = 1e-13;
-  const double edge = next_prescribed_edge(run_.trajectory);
-  if (!(edge <= until_) || in_pose(now().t)) return false;
-  const double end = grid_.next(now().t, 2 * (edge - now().t)).t;
-  if (!same_instant(end, edge)) return false;
+  const double edge = system().drives().empty() ? until_ : grid_.next_edge(now().t);
   const bool slows = std::ranges::any_of(system().drives(), [&](const Drive& drive) {
     const double left = drive.scale * std::abs(drive.target(edge) - drive.target(now().t));
     return 0 < left && left < soon &&
            drive.scale * std::abs(drive.target.derivative(1, edge)) * run_.options.step <= still;
   });
-  if (!slows) return false;
+  if (!slows || edge > until_ || in_pose(now().t)) return false;
+  const double end = grid_.next(now().t, 2 * (edge - now().t)).t;
+  if (!same_instant(end, next_prescribed_edge(run_.trajectory))) return false;
   WeakRows rows(system());
-  const State clear = clear_of(edge, led_since());
-  const auto is_near = [&](const State& state, double bound) {
-    return rows.below(state, bound) > rows.below(clear, bound);
-  };
   const bool solved = to.report.ok() && !to.report.weak_end, again = in_pose_ && in_pose_->t > now().t;
-  if (solved && (!is_near(to.state, near) || (!again && is_near(now(), near)))) return false;
+  if (solved && !again && rows.below(to.state, near) <= rows.below(now(), near)) return false;
   Probe there{.state = now()};
   std::optional<AroundPose> around = end_in_pose(there, end - now().t);
   const bool other =
       around && !deployed_ && !deployment_.empty() && (crosses(there.state) || fold(there.state) <= margin_);
   const double most = settled * reference_length(base_->structure);
-  if (!around || other || (solved && around->off > most) || resting_.empty() || !is_near(there.state, flat))
+  if (!around || other || (solved && around->off > most) || resting_.empty() ||
+      rows.below(there.state, flat) <= rows.below(clear_of(edge, led_since()), flat))
     return in_pose_.reset(), resting_.clear(), false;
   led_way_ = [this, end = there.state, way = std::make_shared<AroundPose>(std::move(*around))](double t) {
     const AcrossPose& across = way->across;
