@@ -272,7 +272,8 @@ class Locator {
         lo = step;
         f_lo = f;
       }
-      step = std::clamp(step - f / slope, 0.2 * step, 2.0 * step);
+      const double next = step - f / slope, share = next / step;
+      step = share < 0.2 ? 0.2 * step : share > 2.0 ? 2.0 * step : next;  // backwards, too
     }
     return false;
   }
