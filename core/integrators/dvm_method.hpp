@@ -135,7 +135,13 @@ class Dvm final : public Integrator {
   bool stiff_iterations(const State& state, StepReport& report);
   bool steered_iterations(const State& state, StepReport& report);
   double part_of_whole(double h) const { return std::abs(h) / std::max(whole_, std::abs(h)); }
+  struct Stall {
+    double best = infinity;
+    int without_gain = 0;
+  };
   bool needs_care();
+  bool some_part_needs_care();
+  bool nothing_moves(std::vector<Stall>& stalls, double enough, int patience) const;
   bool ends_weakly(StepReport& report);
   bool tight_iterations(const State& state, StepReport& report);
   void arrive(State& state);

@@ -8,6 +8,7 @@ namespace unfurl {
 // to a dead centre, where the motion is small and the constraints hold it by small angles.
 bool Dvm::needs_care() {
   if (!frozen_ || eq_.phi.rows() == 0) return false;
+  if (eq_.parts.several()) return some_part_needs_care();
   const double motion = largest_magnitude(eq_.dX.data(), eq_.dX.size());
   const double reach =
       std::max(eq_.start_pose().lpNorm<Eigen::Infinity>(), system_.constraint_lengths().maxCoeff());
@@ -19,6 +20,44 @@ bool Dvm::needs_care() {
     return true;
   }
   return saddle_.weakest_pivot(needed_pivot_) < needed_pivot_;
+}
+
+// The same of each part by its own motion. What is at rest beside others needs care where it is weak.
+bool Dvm::some_part_needs_care() {
+  const IndependentParts& parts = eq_.parts;
+  const VectorXd& lengths = system_.constraint_lengths();
+  const VectorXd motion = parts.largest(eq_.dX.data(), c_.s - 1), length = parts.largest_of_rows(lengths),
+                 row = parts.largest_of_rows(saddle_.row_scale()),
+                 column = parts.largest(saddle_.column_scale().data());
+  needed_pivot_ = 0;
+  for (Index r = 0; r < lengths.size(); ++r) {
+    const Index p = parts.of_row(r);
+    const double reach = std::max(eq_.part_reach()[p], length[p]),
+                 sigma = row[p] * column[p] * constraint_noise(reach, reach) /
+                         std::max(harmless_ * motion[p], 1e-300),
+                 needed = std::pow(std::min(sigma, strong), 2);
+    if (needed > needed_pivot_ && saddle_.may_be_below(r, needed)) needed_pivot_ = needed;
+  }
+  return needed_pivot_ > 0 && saddle_.weakest_pivot(needed_pivot_) < needed_pivot_;
+}
+
+// Whether the last correction was nothing beside the motion, or no longer gains, in every part by itself.
+bool Dvm::nothing_moves(std::vector<Stall>& stalls, double enough, int patience) const {
+  const auto done = [=](Stall& stall, double size, double motion) {
+    stall.without_gain = size < 0.5 * stall.best ? 0 : stall.without_gain + 1;
+    stall.best = std::min(stall.best, size);
+    return size <= enough * motion || stall.without_gain >= patience;
+  };
+  const IndependentParts& parts = eq_.parts;
+  if (!parts.several())
+    return done(stalls[0], largest_magnitude(rhs_f_.data(), eq_.dX.size()),
+                largest_magnitude(eq_.dX.data(), eq_.dX.size()));
+  const VectorXd sizes = parts.largest(rhs_f_.data(), c_.s - 1),
+                 motions = parts.largest(eq_.dX.data(), c_.s - 1);
+  bool all = true;
+  for (Index p = 0; p < sizes.size(); ++p)
+    all = done(stalls[static_cast<std::size_t>(p)], sizes[p], motions[p]) && all;
+  return all;
 }
 
 // The constraints in increments, corrections from factors that see every mode, until the corrections are
@@ -39,7 +78,7 @@ bool Dvm::tight_iterations(const State& state, StepReport& report) {
   weak_modes_.restart();
   const double enough = std::max(std::numeric_limits<double>::epsilon(), nothing * harmless_);
   double best = infinity, last = infinity;
-  int without_gain = 0;
+  std::vector<Stall> stalls(static_cast<std::size_t>(eq_.parts.count()));
   bool done = false, good = false;
   for (int it = 0; it <= most; ++it) {
     eq_.evaluate();
@@ -50,13 +89,12 @@ bool Dvm::tight_iterations(const State& state, StepReport& report) {
     correct(report);
     const double size = largest_magnitude(rhs_f_.data(), eq_.dX.size()),
                  motion = largest_magnitude(eq_.dX.data(), eq_.dX.size());
-    without_gain = size < 0.5 * best ? 0 : without_gain + 1;
     best = std::min(best, size);
-    done = size <= enough * motion || without_gain >= patience;
+    done = nothing_moves(stalls, enough, patience);
     if (!small_ && done && best > left_by_stall * motion && !saddle_.fine() && saddle_.factorise_finely()) {
       done = careful_ = false;
       finely_ = steps_finely;
-      without_gain = 0;
+      for (Stall& stall : stalls) stall.without_gain = 0;
       weak_modes_.restart();
     } else if (!small_ && !done && size > std::max(slow * last, digits * motion)) {
       const auto flat = [](auto& x, Index length) { return Eigen::Map<VectorXd>(x.data(), length); };

@@ -35,6 +35,7 @@ class RowNoise {
   void add_stiffness(const SparseRows& by_z, double scale) { add_products(by_z, reach_, scale); }
 
   const VectorXd& size() const { return size_; }
+  const VectorXd& coordinates() const { return reach_; }  // of the nodes that follow a solved one
   // The largest coordinate of the nodes that constraint row r depends on [m].
   double reach(Index r) const;
 

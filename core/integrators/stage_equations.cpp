@@ -10,6 +10,7 @@ StageEquations::StageEquations(const System& sys, const GalerkinCoefficients& co
       c(coefficients),
       at_ends(ends),
       rods(sys, coefficients),
+      parts(sys),
       C_size_(coefficients.C.lpNorm<Eigen::Infinity>()),
       rows_(sys) {
   const Index n = system.solved_coordinates(), m = system.constraints(), k = c.s - 1,
@@ -77,6 +78,7 @@ void StageEquations::look_at_forces(const VectorXd& q) {
   system.force_derivatives(t, q, v_tau_, derivatives_);
   by_z_ = derivatives_.by_z.sum();
   by_w_ = derivatives_.by_w.sum();
+  for (const SparseRows* A : {&by_z_, &by_w_}) parts.join(*A);
   for (SparseRows* A : {&by_z_, &by_w_}) A->prune(0.0);  // of what is slack
   const VectorXd m = system.moving_mass();
   omega_ = std::sqrt(rate_bound(by_z_, m));
@@ -129,14 +131,21 @@ void StageEquations::take_rods_as_unknowns(bool unknowns) {
   look_at_forces();
 }
 
-// Rows go by the reach of their own nodes where that of all is far beyond the shortest length.
+// Rows go by the reach of their part, or of their own nodes where that is far beyond the shortest length.
 void StageEquations::find_reach() {
-  far_ = reach_ > far_reach * shortest_;
+  far_ = parts.several() || reach_ > far_reach * shortest_;
   if (!far_) return;
   const VectorXd& lengths = system.constraint_lengths();
   rows_.start(q_0_);
   row_reach_.resize(lengths.size());
   for (Index r = 0; r < lengths.size(); ++r) row_reach_[r] = rows_.reach(r);
+  if (!parts.several()) return;
+  part_reach_ = parts.largest(rows_.coordinates().data());
+  const VectorXd steepest = parts.largest_of_rows(lengths.cwiseInverse());
+  for (Index r = 0; r < lengths.size(); ++r)
+    if (const double reach = part_reach_[parts.of_row(r)]; reach * steepest[parts.of_row(r)] <= far_reach)
+      row_reach_[r] = reach;
+  part_mass_ = parts.largest(system.mass().diagonal().cwiseInverse().eval().data()).cwiseInverse();
 }
 
 void StageEquations::place_nodes() {
@@ -412,15 +421,28 @@ void StageEquations::measure_rows() {
   for (Index r = 0; r < lambda.rows(); ++r) rows_.add_multiplier(r, weight * largest(lambda, r));
   motion_.resize(dX.rows());
   for (Index i = 0; i < motion_.size(); ++i) motion_[i] = largest(dX, i);
-  if (!constant) motion_ = motion_.cwiseMax(beside_motion * motion_.lpNorm<Eigen::Infinity>());
+  if (!constant && !parts.several())
+    motion_ = motion_.cwiseMax(beside_motion * motion_.lpNorm<Eigen::Infinity>());
+  else if (!constant)
+    motion_ = motion_.cwiseMax(beside_motion * parts.spread(parts.largest(motion_.data())));
   rows_.add_inertia(motion_, C_size_ / h);
   if (stiffness_ > 0) rows_.add_stiffness(by_z_, h);
   if (damping_ > 0) rows_.add_products(by_w_, motion_, steepest_);
   momentum_level_ = 0;
+  const VectorXd of_parts = parts.several() ? sizes_of_parts() : VectorXd();
   for (Index i = 0; i < momentum.rows(); ++i) {
-    const double error = largest(momentum, i), size = rows_.size()[i];
+    double error = largest(momentum, i), size = rows_.size()[i];
+    if (of_parts.size() > 0) size = std::max(size, of_parts[parts.of(i)]);
     if (error > 0) momentum_level_ = std::max(momentum_level_, error / (momentum_noise * size));
   }
+}
+
+// One size for all rows of a part where that does no harm there; else none.
+VectorXd StageEquations::sizes_of_parts() const {
+  VectorXd out = parts.largest(rows_.size().data());
+  for (Index p = 0; p < out.size(); ++p)
+    if (std::abs(h) * out[p] > harmless_noise * part_mass_[p] * part_reach_[p]) out[p] = 0;
+  return out;
 }
 
 // Momentum: compared with the sizes of the terms that cancel in it, and with what rounding the coordinates

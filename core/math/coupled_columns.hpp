@@ -14,6 +14,7 @@ class CoupledColumns {
   explicit CoupledColumns(Index columns) : parent_(static_cast<std::size_t>(columns)) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
   }
+  Index size() const { return std::ssize(parent_); }
   void join_rows_of(const SparseRows& A) {
     for (int r = 0; r < A.outerSize(); ++r) {
       const Index first = SparseRows::InnerIterator(A, r) ? set_of(SparseRows::InnerIterator(A, r).col()) : 0;

@@ -44,6 +44,7 @@ class SaddleSolver {
   // regularisation or round-off hide are found by factorise_finely, whose factors are then in use. The sparse
   // order is left where it cannot tell.
   double weakest_pivot(double bound);
+  bool may_be_below(Index r, double bound) const;  // row r by itself, which may be redundant
   // How many rows have a smaller pivot, as far as the factors in use tell: all that have, and redundant ones
   // that depend on few others. And by factors in twice the digits, which are in use then where a row is weak.
   Index rows_below(double bound) const;
@@ -71,6 +72,8 @@ class SaddleSolver {
 
   // The largest motion [m] that answers a row's error [m], but for the singular values of G^.
   double motion_of_error() const;
+  const VectorXd& row_scale() const { return row_scale_; }        // R
+  const VectorXd& column_scale() const { return column_scale_; }  // D
 
   // One application of K_e^{-1}, no refinement: right for the corrections of an iteration that computes its
   // own residuals. f [n], g [m] are overwritten by x, y; row by row for several columns: f[i * columns + c].

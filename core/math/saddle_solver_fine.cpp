@@ -96,6 +96,10 @@ double SaddleSolver::weakest_pivot(double bound) {
   return std::min(bound, weakest_);
 }
 
+bool SaddleSolver::may_be_below(Index r, double bound) const {
+  return pivot_of_row(r) < 2 * (bound + regularisation_) || growth_ * 2 * bound >= 1;
+}
+
 Index SaddleSolver::rows_below(double bound) const {
   Index below = 0;
   for (Index r = 0; r < m_; ++r) below += pivot_of_row(r) < 2 * (bound + regularisation_) ? 1 : 0;
