@@ -17,9 +17,20 @@ IndependentParts::IndependentParts(const System& system) : sets_(system.solved_c
   number();
 }
 
-void IndependentParts::join(const SparseRows& forces) {
+void IndependentParts::join(const SparseRows& rows) {
   if (!several()) return;
-  sets_.join_rows_of(forces);
+  sets_.join_rows_of(rows);
+  number();
+}
+
+void IndependentParts::join_by_forces(const System& system, const State& state) {
+  if (!several() || system.constant_forces()) return;
+  VectorXd q(system.coordinates()), v(q.size());
+  system.expand(state.z, q);
+  system.expand_rate(state.w, v);
+  SparseRows by_z, by_w;
+  system.force_derivatives(state.t, q, v, by_z, by_w);
+  for (const SparseRows* A : {&by_z, &by_w}) sets_.join_rows_of(*A);
   number();
 }
 

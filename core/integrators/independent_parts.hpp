@@ -13,7 +13,8 @@ namespace unfurl {
 class IndependentParts {
  public:
   explicit IndependentParts(const System& system);
-  void join(const SparseRows& forces);  // by their derivatives, zeros of what is slack included
+  void join(const SparseRows& rows);  // coordinates that stand in one row of it, with whatever number
+  void join_by_forces(const System& system, const State& state);
   bool several() const { return count_ > 1; }
   Index count() const { return count_; }
   Index of(Index coordinate) const { return part_[static_cast<std::size_t>(coordinate)]; }

@@ -24,6 +24,8 @@ void OneSided::follow(const Model& model, const State& state) {
   if (!index1_) {
     followed_.emplace(model.system);
     index1_ = std::make_unique<Index1>(*followed_);
+    parts_.emplace(model.system);
+    parts_->join_by_forces(model.system, state);
   }
   followed_->follow(state);
   acceleration_.resize(state.z.size());
@@ -34,24 +36,28 @@ void OneSided::measure_held(const Model& model, const State& state, Probe& probe
   follow(model, state);
   State with_forces = state;
   if (index1_->evaluate(state, acceleration_, lambda_)) with_forces.lambda = lambda_;
-  const double zero = std::max({force_zero * with_forces.lambda.lpNorm<Eigen::Infinity>(),
-                                rounded_force * index1_->applied_force(state).lpNorm<Eigen::Infinity>(),
-                                std::numeric_limits<double>::min()});
+  const VectorXd zero = (force_zero * parts_->largest_of_rows(with_forces.lambda))
+                            .cwiseMax(rounded_force * parts_->largest(index1_->applied_force(state).data()))
+                            .cwiseMax(std::numeric_limits<double>::min());
+  VectorXd zeros = VectorXd::Zero(std::ssize(active_));
   weigh(model, state);
   const std::set<std::size_t> held = this->held();
   for (const std::size_t i : held) {
     const auto row = static_cast<Index>(i);
     const double push = stops_.push(i, model, held, with_forces);
-    probe.margins[row] = push / zero, probe.forces[row] = std::abs(push);
+    zeros[row] = zero[parts_->of_row(stops_.held_row(i, model, held))];
+    probe.margins[row] = push / zeros[row], probe.forces[row] = std::abs(push);
     held_force_[row] = push * (measure(i).is_angle() ? row_arm(model.structure, stops_[i].measure) : 1.0);
   }
   // What sticks lies before the stops that are held, in its order.
   auto constraint = static_cast<int>(std::ssize(model.structure.constraints) - std::ssize(held));
   for (std::size_t i = first_motor(); i-- > first_friction();)
-    if (active_[i])
-      held_force_[static_cast<Index>(i)] =
-          -with_forces.lambda[model.system.constraint_row(--constraint)] * friction(i).row;
-  measure_sticking(zero, probe);
+    if (active_[i]) {
+      const int row = model.system.constraint_row(--constraint);
+      held_force_[static_cast<Index>(i)] = -with_forces.lambda[row] * friction(i).row;
+      zeros[static_cast<Index>(i)] = zero[parts_->of_row(row)];
+    }
+  measure_sticking(zeros, probe);
 }
 
 // A gap that its force lets go opens with the cube of time, which a step of second order follows with either
@@ -69,7 +75,7 @@ bool OneSided::leaves(std::size_t i, const Model& model, const State& state, dou
 }
 
 // Of frictions that stick: those that are held, by stops too, and those that rest by them, as stops may.
-void OneSided::measure_sticking(double zero, Probe& probe) {
+void OneSided::measure_sticking(const VectorXd& zeros, Probe& probe) {
   std::vector<Index> held, resting;
   VectorXd tau = VectorXd::Constant(held_force_.size(), std::numeric_limits<double>::infinity());
   for (Index i = 0; i < tau.size(); ++i) {
@@ -86,7 +92,7 @@ void OneSided::measure_sticking(double zero, Probe& probe) {
       const Index i = held[static_cast<std::size_t>(k)];
       if (!is_friction(static_cast<std::size_t>(i))) continue;
       const double arm = friction(static_cast<std::size_t>(i)).row;
-      probe.margins[i] = (hold.capacity - hold.load) / std::max(zero * arm, force_zero * hold.capacity);
+      probe.margins[i] = (hold.capacity - hold.load) / std::max(zeros[i] * arm, force_zero * hold.capacity);
     }
 }
 

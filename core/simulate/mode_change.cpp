@@ -228,7 +228,7 @@ class Change {
       return false;
     }
     rounds_ = sum_rounding * by_themselves.terms;
-    multiplier_ = by_themselves.largest_multiplier;
+    multiplier_ = std::move(by_themselves.largest_multiplier);
     bool still_there = true;  // and nothing that held has broken, which moves something
     for (Index r = 0; r < count(); ++r) {
       if (!movable(r))
@@ -294,7 +294,7 @@ class Change {
   // What a force gives that was located as zero.
   double located_acceleration(Index r) const {
     const double arm = sides_.stops().touching() / sides_.touching(side(r));  // of what turns
-    return zero_acceleration(r) + located * (D_(r, r) * arm * multiplier_ +
+    return zero_acceleration(r) + located * (D_(r, r) * arm * multiplier_[r] +
                                              D_.row(r).cwiseAbs().dot(solution_.x.transpose().cwiseAbs()));
   }
 
@@ -473,8 +473,7 @@ class Change {
   std::vector<bool> stops_, struck_, passes_, rests_, still_, movable_;
   std::vector<int> slips_;
   MatrixXd D_;
-  VectorXd spread_, rate_, b_, rounds_, low_, high_;
-  double multiplier_ = 0;
+  VectorXd spread_, rate_, b_, rounds_, multiplier_, low_, high_;
   BoxSolution solution_;
 };
 

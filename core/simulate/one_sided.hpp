@@ -12,6 +12,7 @@
 
 #include "core/forces/motor.hpp"
 #include "core/forces/pin_loads.hpp"
+#include "core/integrators/independent_parts.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/integrators/solver_options.hpp"
 #include "core/simulate/crossing.hpp"
@@ -194,7 +195,7 @@ class OneSided {
     return rooms(motor, q, v, state)[static_cast<std::size_t>(motor.law.motor.regime)];
   }
   bool leaves(std::size_t i, const Model& model, const State& state, double passed, double rate) const;
-  void measure_sticking(double zero, Probe& probe);
+  void measure_sticking(const VectorXd& zeros, Probe& probe);  // forces that count as none
   void measure_friction(const VectorXd& q, const VectorXd& v, const State& state, std::size_t i,
                         Probe& probe);
   double stretch(const Cable& cable, double t, const VectorXd& q, const VectorXd& v, double& rate);
@@ -213,8 +214,9 @@ class OneSided {
   double step_;
   bool eliminate_linear_, rates_drift_;
   VectorXd gradient_, acceleration_, lambda_;
-  std::optional<System> followed_;       // the present model's, near a state's angles
-  std::unique_ptr<Index1> index1_;       // of that
+  std::optional<System> followed_;  // the present model's, near a state's angles
+  std::unique_ptr<Index1> index1_;  // of that
+  std::optional<IndependentParts> parts_;
   std::unique_ptr<PinLoads> pin_loads_;  // the present model's
 };
 

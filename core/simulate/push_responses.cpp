@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/integrators/independent_parts.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/math/factors.hpp"
 #include "core/simulate/force_sizes.hpp"
@@ -118,6 +119,24 @@ double PushResponses::spread(Index i) const {
          row.n.dot(row.a);
 }
 
+VectorXd PushResponses::largest_multipliers(const State& state, const VectorXd& lambda) const {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index i = 0; i < size(); ++i)
+    for (Index k = 0; k < system_.solved_coordinates(); ++k)
+      if (const double n = rows_[static_cast<std::size_t>(i)].n[k]; n != 0)
+        entries.emplace_back(static_cast<int>(i), static_cast<int>(k), n);
+  SparseRows pushes(size(), system_.solved_coordinates());
+  pushes.setFromTriplets(entries.begin(), entries.end());
+  IndependentParts parts(system_);
+  parts.join_by_forces(system_, state);
+  parts.join(pushes);
+  const VectorXd most = parts.largest_of_rows(lambda);
+  VectorXd out = VectorXd::Constant(size(), lambda.lpNorm<Eigen::Infinity>());
+  for (int i = 0; i < pushes.outerSize(); ++i)
+    if (const SparseRows::InnerIterator it(pushes, i); it) out[i] = most[parts.of(it.col())];
+  return out;
+}
+
 // n . w' = a . F + ..., and by what rounds in F it is off.
 PushResponses::Accelerations PushResponses::accelerations(const Structure& structure,
                                                           const State& state) const {
@@ -126,11 +145,11 @@ PushResponses::Accelerations PushResponses::accelerations(const Structure& struc
   if (!index1.evaluate(state, acceleration, lambda)) return {};
   system_.expand_rate(state.w, v);
   const VectorXd sizes = force_sizes(system_, structure, state, lambda);
-  const double largest = lambda.lpNorm<Eigen::Infinity>();
   const double fastest = acceleration.lpNorm<Eigen::Infinity>();
   const double freely =
       sizes.size() > 0 ? sizes.cwiseQuotient(VectorXd(system_.mass().diagonal())).maxCoeff() : 0.0;
-  Accelerations out{VectorXd(size()), VectorXd(size()), VectorXd(size()), VectorXd(size()), largest};
+  Accelerations out{VectorXd(size()), VectorXd(size()), VectorXd(size()), VectorXd(size()),
+                    largest_multipliers(state, lambda)};
   for (Index i = 0; i < size(); ++i) {
     const Row& row = rows_[static_cast<std::size_t>(i)];
     const double curvature = row.measure->curvature_along(q_.data(), v.data());

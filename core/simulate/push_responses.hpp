@@ -43,7 +43,7 @@ class PushResponses {
   // or as any would be by what acts on it alone.
   struct Accelerations {
     VectorXd value, terms, of_coordinates, uncancelled;
-    double largest_multiplier = 0.0;  // of what holds there [N]
+    VectorXd largest_multiplier;  // of what holds there in what each is joined with [N]
   };
   Accelerations accelerations(const Structure& structure, const State& state) const;
 
@@ -55,6 +55,8 @@ class PushResponses {
     double size;        // of n before linear constraints, which may leave nothing of it
     LimitMotion limit;  // of what s is bounded by: rates and accelerations are relative to it
   };
+  VectorXd largest_multipliers(const State& state, const VectorXd& lambda) const;
+
   const System& system_;
   SparseRows G_;
   SaddleSolver saddle_;

@@ -95,11 +95,14 @@ bool Stops::is_held(std::size_t i, const Structure& structure) const {
                              [&](const Constraint& c) { return c.side == static_cast<int>(i); });
 }
 
+int Stops::held_row(std::size_t i, const Model& model, const std::set<std::size_t>& held) {
+  const auto behind = std::distance(held.find(i), held.end());
+  return model.system.constraint_row(static_cast<int>(std::ssize(model.structure.constraints) - behind));
+}
+
 double Stops::push(std::size_t i, const Model& model, const std::set<std::size_t>& held,
                    const State& state) const {
-  const auto behind = std::distance(held.find(i), held.end());
-  const int constraint = static_cast<int>(std::ssize(model.structure.constraints) - behind);
-  return -stops_[i].sign * state.lambda[model.system.constraint_row(constraint)];
+  return -stops_[i].sign * state.lambda[held_row(i, model, held)];
 }
 
 }  // namespace unfurl

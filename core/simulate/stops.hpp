@@ -65,6 +65,8 @@ class Stops {
   // These stops become constraints, the last ones of the structure, in their order.
   void hold(const std::set<std::size_t>& held, Structure& structure) const;
   bool is_held(std::size_t i, const Structure& structure) const;  // has it such a constraint?
+  // The row that holds stop i in such a model.
+  static int held_row(std::size_t i, const Model& model, const std::set<std::size_t>& held);
   // The force with which stop i pushes in a state of a model that holds them so, negative where it pulls [N]
   // or [N m].
   double push(std::size_t i, const Model& model, const std::set<std::size_t>& held, const State& state) const;

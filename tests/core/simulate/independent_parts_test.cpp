@@ -14,6 +14,7 @@ namespace independent_parts_test {
 
 namespace {
 
+using testing::end_positions;
 using testing::number;
 using testing::run_scene;
 
@@ -65,6 +66,33 @@ end_time = 1
 )toml";
 }
 
+// A body of 1 kg on a line, pulled by a force that grows by 2 N/s, beside one of 1e9 kg that swings on a rod.
+std::string beside_what_bears_much(const std::string& what_holds, const std::string& values) {
+  return R"toml([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], mass = 1}, {name = "Y", position = [3, 0, 0], fixed = true},
+  {name = "Z", position = [3.6, 0, -0.8], mass = 1e9}]
+rods = [{nodes = ["Y", "Z"], mass = 1}]
+[gravity]
+acceleration = [0, 0, -9.81]
+[[constraints]]
+kind = "line"
+nodes = ["A"]
+direction = [1, 0, 0]
+[[forces]]
+kind = "load_over_time"
+nodes = ["A"]
+force = [1, 0, 0]
+times = [0, 1]
+values = )toml" +
+         values + "\n" + what_holds + R"toml(
+nodes = ["A"]
+direction = [1, 0, 0]
+[solver]
+end_time = 1
+)toml";
+}
+
 }  // namespace
 
 // The height over the dead centre is sqrt(1 - c^2) where the slider is at 2 c: 4e-12 of it is what rounding c
@@ -92,6 +120,20 @@ TEST_CASE("a linkage next to its dead centre is solved as exactly beside a body 
 TEST_CASE("a pendulum takes as many iterations wherever something else is") {
   const long alone = run_scene(beside_far_body(3)).newton_iterations;
   CHECK(std::abs(run_scene(beside_far_body(1e6)).newton_iterations - alone) < 20);
+}
+
+// Forces are located as zero to 1e-10 of what the part bears. By the rod's 1e10 N friction of 1 N held until
+// 0.92 s, unsaid, and so did the stop. From 0.5 s on the body has v = (t - 0.5)^2.
+TEST_CASE("friction and stops let go by their own forces beside a rod that bears 1e10 N") {
+  const char* const holds[] = {"[[forces]]\nkind = \"friction\"\nkinetic = 1",
+                               "[[constraints]]\nkind = \"coordinate_stop\"\nmin = 0"};
+  for (const int stop : {0, 1}) {
+    INFO(holds[stop]);
+    const Simulation run = run_scene(beside_what_bears_much(holds[stop], stop ? "[-1, 1]" : "[0, 2]"));
+    REQUIRE(run.status == RunStatus::completed);
+    CHECK(run.events.back().t == Approx(0.5).epsilon(0).margin(1e-9));
+    CHECK(end_positions(run)[0] == Approx(0.125 / 3).epsilon(0).margin(1e-9));
+  }
 }
 
 }  // namespace independent_parts_test
