@@ -140,7 +140,6 @@ class Dvm final : public Integrator {
     int without_gain = 0;
   };
   bool needs_care();
-  bool some_part_needs_care();
   bool nothing_moves(std::vector<Stall>& stalls, double enough, int patience) const;
   bool ends_weakly(StepReport& report);
   bool tight_iterations(const State& state, StepReport& report);

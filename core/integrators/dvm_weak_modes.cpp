@@ -8,7 +8,12 @@ namespace unfurl {
 // to a dead centre, where the motion is small and the constraints hold it by small angles.
 bool Dvm::needs_care() {
   if (!frozen_ || eq_.phi.rows() == 0) return false;
-  if (eq_.parts.several()) return some_part_needs_care();
+  if (eq_.parts.several()) {
+    const VectorXd motions = eq_.parts.largest(eq_.dX.data(), c_.s - 1);
+    const PartSizes::Care care = eq_.parts.care(saddle_, motions, harmless_, strong);
+    needed_pivot_ = care.always ? strong * strong : care.pivot;
+    return needed_pivot_ > 0 && (saddle_.weakest_pivot(needed_pivot_) < needed_pivot_ || care.always);
+  }
   const double motion = largest_magnitude(eq_.dX.data(), eq_.dX.size());
   const double reach =
       std::max(eq_.start_pose().lpNorm<Eigen::Infinity>(), system_.constraint_lengths().maxCoeff());
@@ -20,25 +25,6 @@ bool Dvm::needs_care() {
     return true;
   }
   return saddle_.weakest_pivot(needed_pivot_) < needed_pivot_;
-}
-
-// The same of each part by its own motion. What is at rest beside others needs care where it is weak.
-bool Dvm::some_part_needs_care() {
-  const IndependentParts& parts = eq_.parts;
-  const VectorXd& lengths = system_.constraint_lengths();
-  const VectorXd motion = parts.largest(eq_.dX.data(), c_.s - 1), length = parts.largest_of_rows(lengths),
-                 row = parts.largest_of_rows(saddle_.row_scale()),
-                 column = parts.largest(saddle_.column_scale().data());
-  needed_pivot_ = 0;
-  for (Index r = 0; r < lengths.size(); ++r) {
-    const Index p = parts.of_row(r);
-    const double reach = std::max(eq_.part_reach()[p], length[p]),
-                 sigma = row[p] * column[p] * constraint_noise(reach, reach) /
-                         std::max(harmless_ * motion[p], 1e-300),
-                 needed = std::pow(std::min(sigma, strong), 2);
-    if (needed > needed_pivot_ && saddle_.may_be_below(r, needed)) needed_pivot_ = needed;
-  }
-  return needed_pivot_ > 0 && saddle_.weakest_pivot(needed_pivot_) < needed_pivot_;
 }
 
 // Whether the last correction was nothing beside the motion, or no longer gains, in every part by itself.

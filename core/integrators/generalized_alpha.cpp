@@ -39,7 +39,8 @@ class GeneralizedAlpha final : public Integrator {
         saddle_(system.mass(), G_),
         least_mass_(system.mass().diagonal().minCoeff()),
         least_moving_(system.moving_mass().minCoeff()),
-        rows_(system) {
+        rows_(system),
+        parts_(system) {
     lead_ = steady_.alpha_m - steady_.alpha_f;
     for (VectorXd* v :
          {&a0_, &a_, &change_, &acceleration0_, &acceleration_, &z_, &w_, &residual_, &dz_, &inertia_})
@@ -128,6 +129,7 @@ class GeneralizedAlpha final : public Integrator {
   SparseRows by_z_, by_w_;              // derivatives of the forces at the first of these steps
   double stiffness_ = 0, damping_ = 0;  // their largest entries, of what moves
   RowNoise rows_;
+  PartSizes parts_;
 };
 
 bool GeneralizedAlpha::begin(const State& state, double h, StepReport& report) {
@@ -156,6 +158,7 @@ void GeneralizedAlpha::look_at_forces(const State& state) {
   const VectorXd m = system_.moving_mass();
   stiffness_ = largest_of_moving(by_z_, m);
   damping_ = largest_of_moving(by_w_, m);
+  for (const SparseRows* A : {&by_z_, &by_w_}) parts_.join(*A);
 }
 
 // Unchanged acceleration and multipliers.
@@ -198,10 +201,12 @@ double GeneralizedAlpha::evaluate(double t, double h) {
   residual_ = inertia_ - residual_;
   const VectorXd& lengths = system_.constraint_lengths();
   const double reach = q_.lpNorm<Eigen::Infinity>();
-  const bool far = lengths.size() > 0 && reach > far_reach * lengths.minCoeff();
+  const bool far = parts_.several() || (lengths.size() > 0 && reach > far_reach * lengths.minCoeff());
   double level = momentum_level(h, reach, far);
-  for (Index r = 0; r < phi_.size(); ++r)
-    level = std::max(level, std::abs(phi_[r]) / constraint_noise(lengths[r], far ? rows_.reach(r) : reach));
+  for (Index r = 0; r < phi_.size(); ++r) {
+    const double own = parts_.several() ? parts_.reach(r) : far ? rows_.reach(r) : reach;
+    level = std::max(level, std::abs(phi_[r]) / constraint_noise(lengths[r], own));
+  }
   return residual_.allFinite() && phi_.allFinite() ? level : std::numeric_limits<double>::infinity();
 }
 
@@ -214,6 +219,7 @@ double GeneralizedAlpha::momentum_level(double h, double reach, bool far) {
       std::max({residual_size_, most(inertia_), most(lambda_), stiffness_ * way, damping_ * speed, 1e-300});
   if (!far && h * h * size <= harmless_noise * least_mass_ * reach) return most(residual_) / (8 * ulp * size);
   rows_.start(q_);
+  if (parts_.several()) parts_.start(rows_);
   rows_.add_forces(applied_);
   rows_.add_multipliers(lambda_, 1.0);
   rows_.add_inertia(acceleration_, 1.0);
@@ -222,10 +228,12 @@ double GeneralizedAlpha::momentum_level(double h, double reach, bool far) {
     rows_.add_products(by_z_, h * h * (acceleration_.cwiseAbs() + a_.cwiseAbs()), 1.0);
   }
   if (damping_ > 0) rows_.add_products(by_w_, w_.cwiseAbs() + h * a_.cwiseAbs(), 1.0);
+  VectorXd sizes = rows_.size();
+  if (parts_.several()) sizes = sizes.cwiseMax(parts_.spread(parts_.harmless(sizes, h * h)));
   double level = 0;
   for (Index i = 0; i < residual_.size(); ++i)
     if (const double error = std::abs(residual_[i]); error > 0)
-      level = std::max(level, error / (8 * ulp * rows_.size()[i]));
+      level = std::max(level, error / (8 * ulp * sizes[i]));
   return level;
 }
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/integrators/constraint_increment.hpp"
-#include "core/integrators/row_noise.hpp"
+#include "core/integrators/part_sizes.hpp"
 #include "core/math/saddle_solver.hpp"
 #include "core/system/system.hpp"
 
@@ -41,6 +41,7 @@ class Projection {
   std::vector<double> scratch_;
   SaddleSolver saddle_;
   RowNoise rows_;
+  PartSizes parts_;
   std::unique_ptr<ConstraintIncrement> increment_;  // made when first needed
   VectorXd q_, phi_, force_, offset_, x_, y_, move_;
   int iterations_ = 0;

@@ -131,21 +131,15 @@ void StageEquations::take_rods_as_unknowns(bool unknowns) {
   look_at_forces();
 }
 
-// Rows go by the reach of their part, or of their own nodes where that is far beyond the shortest length.
+// Rows go by the reach of their own nodes where that of all is far beyond the shortest length.
 void StageEquations::find_reach() {
   far_ = parts.several() || reach_ > far_reach * shortest_;
   if (!far_) return;
-  const VectorXd& lengths = system.constraint_lengths();
   rows_.start(q_0_);
-  row_reach_.resize(lengths.size());
-  for (Index r = 0; r < lengths.size(); ++r) row_reach_[r] = rows_.reach(r);
-  if (!parts.several()) return;
-  part_reach_ = parts.largest(rows_.coordinates().data());
-  const VectorXd steepest = parts.largest_of_rows(lengths.cwiseInverse());
-  for (Index r = 0; r < lengths.size(); ++r)
-    if (const double reach = part_reach_[parts.of_row(r)]; reach * steepest[parts.of_row(r)] <= far_reach)
-      row_reach_[r] = reach;
-  part_mass_ = parts.largest(system.mass().diagonal().cwiseInverse().eval().data()).cwiseInverse();
+  if (parts.several()) parts.start(rows_);
+  row_reach_.resize(system.constraints());
+  for (Index r = 0; r < row_reach_.size(); ++r)
+    row_reach_[r] = parts.several() ? parts.reach(r) : rows_.reach(r);
 }
 
 void StageEquations::place_nodes() {
@@ -429,20 +423,12 @@ void StageEquations::measure_rows() {
   if (stiffness_ > 0) rows_.add_stiffness(by_z_, h);
   if (damping_ > 0) rows_.add_products(by_w_, motion_, steepest_);
   momentum_level_ = 0;
-  const VectorXd of_parts = parts.several() ? sizes_of_parts() : VectorXd();
+  const VectorXd of_parts = parts.several() ? parts.harmless(rows_.size(), std::abs(h)) : VectorXd();
   for (Index i = 0; i < momentum.rows(); ++i) {
     double error = largest(momentum, i), size = rows_.size()[i];
     if (of_parts.size() > 0) size = std::max(size, of_parts[parts.of(i)]);
     if (error > 0) momentum_level_ = std::max(momentum_level_, error / (momentum_noise * size));
   }
-}
-
-// One size for all rows of a part where that does no harm there; else none.
-VectorXd StageEquations::sizes_of_parts() const {
-  VectorXd out = parts.largest(rows_.size().data());
-  for (Index p = 0; p < out.size(); ++p)
-    if (std::abs(h) * out[p] > harmless_noise * part_mass_[p] * part_reach_[p]) out[p] = 0;
-  return out;
 }
 
 // Momentum: compared with the sizes of the terms that cancel in it, and with what rounding the coordinates

@@ -10,7 +10,7 @@
 #include "core/integrators/constraint_increment.hpp"
 #include "core/integrators/elastic_stages.hpp"
 #include "core/integrators/galerkin.hpp"
-#include "core/integrators/independent_parts.hpp"
+#include "core/integrators/part_sizes.hpp"
 #include "core/integrators/row_noise.hpp"
 #include "core/system/system.hpp"
 
@@ -99,10 +99,9 @@ class StageEquations {
     return unfurl::constraint_noise(system.constraint_lengths()[r], far_ ? row_reach_[r] : reach_);
   }
 
-  const VectorXd& part_reach() const { return part_reach_; }  // largest coordinates, where there are several
-  double multiplier_weight(int k) const;                      // b_k, or 1/2 for the ends variant; k = 0..s-1
-  const VectorXd& start_pose() const { return q_0_; }         // node coordinates at node 0
-  void pose(int k, VectorXd& q) const { q = Q.col(k); }       // at node k; q must have its size
+  double multiplier_weight(int k) const;                 // b_k, or 1/2 for the ends variant; k = 0..s-1
+  const VectorXd& start_pose() const { return q_0_; }    // node coordinates at node 0
+  void pose(int k, VectorXd& q) const { q = Q.col(k); }  // at node k; q must have its size
 
   const System& system;
   const GalerkinCoefficients& c;
@@ -112,7 +111,7 @@ class StageEquations {
   Interleaved dX, lambda, momentum, phi;
   Interleaved Q;  // [3 nodes x s]
   ElasticStages rods;
-  IndependentParts parts;
+  PartSizes parts;
 
  private:
   static constexpr int fewest_that_tell = 4;  // stages whose points tell the forces of waves not resolved
@@ -140,7 +139,6 @@ class StageEquations {
   template <LaneCount K>
   void measure_rows();
   void find_reach();
-  VectorXd sizes_of_parts() const;
 
   Interleaved Z_, MdX_;      // coordinates and M dX_j of nodes 2..s
   Interleaved applied_, f_;  // impulses of the applied forces and of all forces on nodes 1..s-1
@@ -173,8 +171,8 @@ class StageEquations {
   RowNoise rows_;                         // the same row by row, where that makes a difference
   // The noise of each row goes by a reach of its own: some nodes are far from the origin, or there are parts.
   bool far_ = false;
-  double shortest_ = 0;                          // length of a constraint
-  VectorXd row_reach_, part_reach_, part_mass_;  // of parts: largest coordinate, smallest M_ii
+  double shortest_ = 0;  // length of a constraint
+  VectorXd row_reach_;
 };
 
 }  // namespace unfurl

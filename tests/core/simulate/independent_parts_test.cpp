@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
@@ -22,14 +23,14 @@ constexpr double begin = 0.001 * radians_per_degree, end = 0.0005 * radians_per_
 
 // A crank and a rod of 1 m from 0.001 degrees to half of that off their dead centre, beside a body that flies
 // by.
-std::string next_to_dead_centre(double speed) {
+std::string next_to_dead_centre(double x, double speed) {
   return R"toml([structure]
 kind = "custom"
 nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "X", position = [5, 0, 0], fixed = true},
   {name = "B", position = ["=cos(0.001*deg)", 0, "=sin(0.001*deg)"]},
   {name = "C", position = ["=2*cos(0.001*deg)", 0, 0], mass = 1},
-  {name = "Z", position = [0, 3, 0], velocity = [)toml" +
-         number(speed) + R"toml(, 0, 0], mass = 1}]
+  {name = "Z", position = [)toml" +
+         number(x) + R"toml(, 3, 0], velocity = [)toml" + number(speed) + R"toml(, 0, 0], mass = 1}]
 rods = [{nodes = ["A", "B"], mass = 1}, {nodes = ["B", "C"], mass = 1}]
 [[structure.constraints]]
 kind = "plane"
@@ -95,14 +96,18 @@ end_time = 1
 
 }  // namespace
 
-// The height over the dead centre is sqrt(1 - c^2) where the slider is at 2 c: 4e-12 of it is what rounding c
-// leaves there, half an ulp of 1 over the angle's sine, twice over for the two rods. Whether it shows was
-// judged by the largest motion of all: beside a body of 10 km/s the linkage was off by 3e-8 m, 3 % of its
-// way.
-TEST_CASE("a linkage next to its dead centre is solved as exactly beside a body that flies by") {
-  for (const double speed : {0.0, 1.0, 1e4}) {
-    const Simulation run = run_scene(next_to_dead_centre(speed));
-    INFO("speed " << speed);
+// The height over the dead centre is sqrt(1 - c^2) where the slider is at 2 c: rounding c by half an ulp
+// leaves 1e-11 m there, and some of these are within what methods solve to. Whether that shows was judged by
+// the largest motion and coordinate of all: beside a body of 10 km/s the linkage was off by 3e-8 of its way
+// of 9e-6 m, with generalized_alpha beside one that rests 9 km away by 2e-7 m.
+TEST_CASE("a linkage next to its dead centre is solved as exactly beside a body that flies by or is far") {
+  for (const auto& [method, x, speed] : {std::tuple("dvm", 0.0, 0.0),
+                                         {"dvm", 0.0, 1.0},
+                                         {"dvm", 0.0, 1e4},
+                                         {"generalized_alpha", 9e3, 0.0},
+                                         {"rk4_projected", 9e3, 1e4}}) {
+    const Simulation run = run_scene(next_to_dead_centre(x, speed), {std::string("solver.method=") + method});
+    INFO(method << " speed " << speed);
     REQUIRE(run.status == RunStatus::completed);
     double worst = 0;
     for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
@@ -111,7 +116,7 @@ TEST_CASE("a linkage next to its dead centre is solved as exactly beside a body 
       const double height = run.trajectory.node_positions(i)[3 * 2 + 2];
       worst = std::max(worst, std::abs(height - std::sqrt((1 - c) * (1 + c))));
     }
-    CHECK(worst < 4e-11);
+    CHECK(worst < 1e-10);
   }
 }
 
