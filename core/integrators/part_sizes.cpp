@@ -21,10 +21,16 @@ void PartSizes::start(const RowNoise& rows) {
   }
 }
 
+// In a part on which nothing acts the residual is the only term: none but zero would be round-off.
 VectorXd PartSizes::harmless(const VectorXd& of_rows, double scale) const {
+  constexpr double least_reach = 1e-9, trifle = 1e-6;
+  const double whole = part_reach_.size() > 0 ? part_reach_.maxCoeff() : 0.0;
   VectorXd out = largest(of_rows.data());
-  for (Index p = 0; p < out.size(); ++p)
-    if (scale * out[p] > harmless_noise * least_mass_[p] * part_reach_[p]) out[p] = 0;
+  for (Index p = 0; p < out.size(); ++p) {
+    const double most =
+        harmless_noise * least_mass_[p] * std::max(part_reach_[p], least_reach * whole) / scale;
+    out[p] = std::max(out[p] <= most ? out[p] : 0.0, trifle * most);
+  }
   return out;
 }
 

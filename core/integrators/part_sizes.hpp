@@ -13,8 +13,9 @@ class PartSizes : public IndependentParts {
   explicit PartSizes(const System& system);
   void start(const RowNoise& rows);                      // at the pose that these have
   double reach(Index r) const { return row_reach_[r]; }  // of constraint row r
-  // One size for all coordinates of a part where it does no harm there (harmless_noise), else none. `of_rows`
-  // times `scale` is what they are of momenta within a step, over its length.
+  // At least so large are the terms of a coordinate: one size for all of a part where it does no harm there
+  // (harmless_noise), else a trifle of what does none. `of_rows` times `scale` is what they are of momenta
+  // within a step, over its length.
   VectorXd harmless(const VectorXd& of_rows, double scale) const;
   // The largest pivot below which errors at round-off show in the motion of a part, each by its own, of parts
   // that may have one, and no more than that of `strong`; 0: of none. `always`: some part moves so little
