@@ -158,7 +158,7 @@ void GeneralizedAlpha::look_at_forces(const State& state) {
   const VectorXd m = system_.moving_mass();
   stiffness_ = largest_of_moving(by_z_, m);
   damping_ = largest_of_moving(by_w_, m);
-  for (const SparseRows* A : {&by_z_, &by_w_}) parts_.join(*A);
+  parts_.look(state.t, q_, v_);
 }
 
 // Unchanged acceleration and multipliers.
@@ -201,10 +201,14 @@ double GeneralizedAlpha::evaluate(double t, double h) {
   residual_ = inertia_ - residual_;
   const VectorXd& lengths = system_.constraint_lengths();
   const double reach = q_.lpNorm<Eigen::Infinity>();
-  const bool far = parts_.several() || (lengths.size() > 0 && reach > far_reach * lengths.minCoeff());
+  const bool far = lengths.size() > 0 && reach > far_reach * lengths.minCoeff();
+  if (parts_.several()) {
+    parts_.start(q_);
+    rows_.start_with(parts_.reaches());
+  }
   double level = momentum_level(h, reach, far);
   for (Index r = 0; r < phi_.size(); ++r) {
-    const double own = parts_.several() ? parts_.reach(r) : far ? rows_.reach(r) : reach;
+    const double own = parts_.several() ? parts_.reach(r, rows_) : far ? rows_.reach(r) : reach;
     level = std::max(level, std::abs(phi_[r]) / constraint_noise(lengths[r], own));
   }
   return residual_.allFinite() && phi_.allFinite() ? level : std::numeric_limits<double>::infinity();
@@ -218,8 +222,7 @@ double GeneralizedAlpha::momentum_level(double h, double reach, bool far) {
   const double size =
       std::max({residual_size_, most(inertia_), most(lambda_), stiffness_ * way, damping_ * speed, 1e-300});
   if (!far && h * h * size <= harmless_noise * least_mass_ * reach) return most(residual_) / (8 * ulp * size);
-  rows_.start(q_);
-  if (parts_.several()) parts_.start(rows_);
+  parts_.several() ? rows_.start_with(parts_.reaches()) : rows_.start(q_);
   rows_.add_forces(applied_);
   rows_.add_multipliers(lambda_, 1.0);
   rows_.add_inertia(acceleration_, 1.0);
@@ -229,7 +232,7 @@ double GeneralizedAlpha::momentum_level(double h, double reach, bool far) {
   }
   if (damping_ > 0) rows_.add_products(by_w_, w_.cwiseAbs() + h * a_.cwiseAbs(), 1.0);
   VectorXd sizes = rows_.size();
-  if (parts_.several()) sizes = sizes.cwiseMax(parts_.spread(parts_.harmless(sizes, h * h)));
+  if (parts_.several()) sizes = sizes.cwiseMax(parts_.least(h * h));
   double level = 0;
   for (Index i = 0; i < residual_.size(); ++i)
     if (const double error = std::abs(residual_[i]); error > 0)

@@ -23,32 +23,31 @@ void IndependentParts::join(const SparseRows& rows) {
   number();
 }
 
-void IndependentParts::join_by_forces(const System& system, const State& state) {
+void IndependentParts::join_by_forces(const System& system, double t, const VectorXd& q, const VectorXd& v) {
   if (!several() || system.constant_forces()) return;
-  VectorXd q(system.coordinates()), v(q.size());
-  system.expand(state.z, q);
-  system.expand_rate(state.w, v);
-  SparseRows by_z, by_w;
-  system.force_derivatives(state.t, q, v, by_z, by_w);
-  for (const SparseRows* A : {&by_z, &by_w}) sets_.join_rows_of(*A);
+  ForceDerivatives found;  // with zeros of what is slack
+  system.force_derivatives(t, q, v, found);
+  sets_.join_rows_of(found.by_z.sum());
+  sets_.join_rows_of(found.by_w.sum());
   number();
 }
 
 void IndependentParts::number() {
   const Index n = sets_.size();
-  part_.resize(static_cast<std::size_t>(n));
-  std::vector<Index> number_of(part_.size(), -1);
+  std::vector<Index> number_of(static_cast<std::size_t>(n), -1);
+  part_.assign(static_cast<std::size_t>(std::max<Index>(n, 1)), 0);  // rows without coordinates have one
   count_ = 0;
   for (Index i = 0; i < n; ++i) {
     Index& number = number_of[static_cast<std::size_t>(sets_.set_of(i))];
     if (number < 0) number = count_++;
     part_[static_cast<std::size_t>(i)] = number;
   }
+  count_ = std::max<Index>(count_, 1);
 }
 
 VectorXd IndependentParts::largest(const double* x, Index columns) const {
   VectorXd out = VectorXd::Zero(count_);
-  for (Index i = 0; i < std::ssize(part_); ++i)
+  for (Index i = 0; i < sets_.size(); ++i)
     for (Index k = 0; k < columns; ++k) out[of(i)] = std::max(out[of(i)], std::abs(x[i * columns + k]));
   return out;
 }
@@ -60,7 +59,7 @@ VectorXd IndependentParts::largest_of_rows(const VectorXd& x) const {
 }
 
 VectorXd IndependentParts::spread(const VectorXd& of_parts) const {
-  VectorXd out(std::ssize(part_));
+  VectorXd out(sets_.size());
   for (Index i = 0; i < out.size(); ++i) out[i] = of_parts[of(i)];
   return out;
 }

@@ -14,7 +14,7 @@ class IndependentParts {
  public:
   explicit IndependentParts(const System& system);
   void join(const SparseRows& rows);  // coordinates that stand in one row of it, with whatever number
-  void join_by_forces(const System& system, const State& state);
+  void join_by_forces(const System& system, double t, const VectorXd& q, const VectorXd& v);  // allocates
   bool several() const { return count_ > 1; }
   Index count() const { return count_; }
   Index of(Index coordinate) const { return part_[static_cast<std::size_t>(coordinate)]; }

@@ -6,32 +6,38 @@
 
 namespace unfurl {
 
-PartSizes::PartSizes(const System& system) : IndependentParts(system), system_(system) {}
+PartSizes::PartSizes(const System& system) : IndependentParts(system), system_(system) {
+  if (several()) felt_ = system.felt_coordinates();
+}
 
-// Rows go by the reach of their part, or of their own nodes where that is far beyond the shortest length.
-void PartSizes::start(const RowNoise& rows) {
-  const VectorXd& lengths = system_.constraint_lengths();
-  part_reach_ = largest(rows.coordinates().data());
+void PartSizes::look(double t, const VectorXd& q, const VectorXd& v) {
+  if (!several() || system_.constant_forces()) return;
+  felt_ = system_.felt_coordinates(t, q, v);
+  join_by_forces(system_, t, q, v);
+  if (q_.size() > 0) place();
+}
+
+void PartSizes::start(const VectorXd& q) {
+  q_ = q;
+  place();
+}
+
+void PartSizes::place() {
+  reaches_.setZero(felt_.rows());
+  for (int i = 0; i < felt_.outerSize(); ++i)
+    for (SparseRows::InnerIterator it(felt_, i); it; ++it)
+      reaches_[i] = std::max(reaches_[i], std::abs(q_[it.col()]));
+  part_reach_ = largest(reaches_.data());
   least_mass_ = largest(system_.mass().diagonal().cwiseInverse().eval().data()).cwiseInverse();
-  const VectorXd shortest = largest_of_rows(lengths.cwiseInverse()).cwiseInverse();
-  row_reach_.resize(lengths.size());
-  for (Index r = 0; r < lengths.size(); ++r) {
-    const Index p = of_row(r);
-    row_reach_[r] = part_reach_[p] <= far_reach * shortest[p] ? part_reach_[p] : rows.reach(r);
-  }
+  shortest_ = largest_of_rows(system_.constraint_lengths().cwiseInverse()).cwiseInverse();
 }
 
 // In a part on which nothing acts the residual is the only term: none but zero would be round-off.
-VectorXd PartSizes::harmless(const VectorXd& of_rows, double scale) const {
+VectorXd PartSizes::least(double scale) const {
   constexpr double least_reach = 1e-9, trifle = 1e-6;
-  const double whole = part_reach_.size() > 0 ? part_reach_.maxCoeff() : 0.0;
-  VectorXd out = largest(of_rows.data());
-  for (Index p = 0; p < out.size(); ++p) {
-    const double most =
-        harmless_noise * least_mass_[p] * std::max(part_reach_[p], least_reach * whole) / scale;
-    out[p] = std::max(out[p] <= most ? out[p] : 0.0, trifle * most);
-  }
-  return out;
+  const double whole = part_reach_.maxCoeff();
+  const VectorXd reach = part_reach_.cwiseMax(least_reach * whole);
+  return spread((trifle * harmless_noise / scale) * least_mass_.cwiseProduct(reach));
 }
 
 PartSizes::Care PartSizes::care(const SaddleSolver& saddle, const VectorXd& motion, double harmless,

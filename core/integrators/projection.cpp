@@ -27,15 +27,22 @@ Projection::Projection(const System& system, double regularisation)
   for (VectorXd* v : {&force_, &x_, &move_}) v->setZero(system.solved_coordinates());
 }
 
+void Projection::start_parts() {
+  parts_.start(q_);
+  rows_.start_with(parts_.reaches());
+}
+
 double Projection::level() {
   const double reach = q_.lpNorm<Eigen::Infinity>();
   const VectorXd& lengths = system_.constraint_lengths();
   const bool far = lengths.size() > 0 && reach > far_reach * lengths.minCoeff();
-  if (far || parts_.several()) rows_.start(q_);
-  if (parts_.several()) parts_.start(rows_);
+  if (parts_.several())
+    start_parts();
+  else if (far)
+    rows_.start(q_);
   double worst = 0;
   for (Index r = 0; r < phi_.size(); ++r) {
-    const double own = parts_.several() ? parts_.reach(r) : far ? rows_.reach(r) : reach;
+    const double own = parts_.several() ? parts_.reach(r, rows_) : far ? rows_.reach(r) : reach;
     const double noise = 2 * std::numeric_limits<double>::epsilon() * std::max(lengths[r], own);
     const double ratio = std::abs(phi_[r]) / noise;
     if (!(ratio <= worst)) worst = ratio;  // NaN too
@@ -50,8 +57,7 @@ bool Projection::needs_care(const VectorXd& z0, const VectorXd& z) {
   system_.jacobian(q_, G_, scratch_);
   if (phi_.size() == 0 || !saddle_.factorise(G_)) return false;
   if (parts_.several()) {
-    rows_.start(q_);
-    parts_.start(rows_);
+    start_parts();
     const VectorXd motion = parts_.largest((z - z0).eval().data());
     const double pivot = parts_.care(saddle_, motion, harmless, strong).pivot;
     return pivot > 0 && saddle_.weakest_pivot(pivot) < pivot;

@@ -35,6 +35,7 @@ class Projection {
  private:
   bool needs_care(const VectorXd& z0, const VectorXd& z);
   bool reach(double t0, double t, VectorXd& move);
+  void start_parts();
   double level();  // of phi_: 1 is what rounding the coordinates leaves
   const System& system_;
   SparseRows G_;

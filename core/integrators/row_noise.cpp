@@ -9,9 +9,14 @@ namespace unfurl {
 RowNoise::RowNoise(const System& system) : system_(system), pattern_(system.jacobian_pattern()) {}
 
 void RowNoise::start(const ConstVec& q) {
+  VectorXd reach(system_.solved_coordinates());
+  system_.reduce_sizes(q, reach);
+  start_with(reach);
+}
+
+void RowNoise::start_with(const VectorXd& reach_of_each) {
   size_.setZero(system_.solved_coordinates());
-  reach_.resize(size_.size());
-  system_.reduce_sizes(q, reach_);
+  reach_ = reach_of_each;
   const VectorXd& lengths = system_.constraint_lengths();
   far_.resize(lengths.size());
   for (Index r = 0; r < lengths.size(); ++r) far_[r] = std::max(1.0, reach(r) / lengths[r]);

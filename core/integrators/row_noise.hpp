@@ -19,6 +19,7 @@ class RowNoise {
  public:
   explicit RowNoise(const System& system);
   void start(const ConstVec& q);                          // at this pose (node coordinates): all sizes zero
+  void start_with(const VectorXd& reach);                 // the same, where coordinates reach so far
   void restart(const VectorXd& sizes) { size_ = sizes; }  // at the same pose, with what was added then
   void add(const ConstVec& own) { size_ += own.cwiseAbs(); }  // of the rows themselves
   void add_forces(const ConstVec& f);                         // on the nodes
@@ -35,7 +36,6 @@ class RowNoise {
   void add_stiffness(const SparseRows& by_z, double scale) { add_products(by_z, reach_, scale); }
 
   const VectorXd& size() const { return size_; }
-  const VectorXd& coordinates() const { return reach_; }  // of the nodes that follow a solved one
   // The largest coordinate of the nodes that constraint row r depends on [m].
   double reach(Index r) const;
 

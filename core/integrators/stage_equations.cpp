@@ -78,7 +78,7 @@ void StageEquations::look_at_forces(const VectorXd& q) {
   system.force_derivatives(t, q, v_tau_, derivatives_);
   by_z_ = derivatives_.by_z.sum();
   by_w_ = derivatives_.by_w.sum();
-  for (const SparseRows* A : {&by_z_, &by_w_}) parts.join(*A);
+  parts.look(t, q, v_tau_);
   for (SparseRows* A : {&by_z_, &by_w_}) A->prune(0.0);  // of what is slack
   const VectorXd m = system.moving_mass();
   omega_ = std::sqrt(rate_bound(by_z_, m));
@@ -133,13 +133,19 @@ void StageEquations::take_rods_as_unknowns(bool unknowns) {
 
 // Rows go by the reach of their own nodes where that of all is far beyond the shortest length.
 void StageEquations::find_reach() {
-  far_ = parts.several() || reach_ > far_reach * shortest_;
+  far_ = reach_ > far_reach * shortest_;
+  if (!far_ && !parts.several()) return;
+  start_rows();
   if (!far_) return;
-  rows_.start(q_0_);
-  if (parts.several()) parts.start(rows_);
   row_reach_.resize(system.constraints());
   for (Index r = 0; r < row_reach_.size(); ++r)
-    row_reach_[r] = parts.several() ? parts.reach(r) : rows_.reach(r);
+    row_reach_[r] = parts.several() ? parts.reach(r, rows_) : rows_.reach(r);
+}
+
+void StageEquations::start_rows() {
+  if (!parts.several()) return rows_.start(q_0_);
+  parts.start(q_0_);
+  rows_.start_with(parts.reaches());
 }
 
 void StageEquations::place_nodes() {
@@ -399,7 +405,7 @@ void StageEquations::measure_rows() {
   if (step_sizes_known_) {
     rows_.restart(step_sizes_);
   } else {
-    rows_.start(q_0_);
+    start_rows();
     rows_.add(p0);
     if (constant) add_applied();
     step_sizes_ = rows_.size();
@@ -423,10 +429,10 @@ void StageEquations::measure_rows() {
   if (stiffness_ > 0) rows_.add_stiffness(by_z_, h);
   if (damping_ > 0) rows_.add_products(by_w_, motion_, steepest_);
   momentum_level_ = 0;
-  const VectorXd of_parts = parts.several() ? parts.harmless(rows_.size(), std::abs(h)) : VectorXd();
+  const VectorXd least = parts.several() ? parts.least(std::abs(h)) : VectorXd();
   for (Index i = 0; i < momentum.rows(); ++i) {
-    double error = largest(momentum, i), size = rows_.size()[i];
-    if (of_parts.size() > 0) size = std::max(size, of_parts[parts.of(i)]);
+    const double error = largest(momentum, i);
+    const double size = least.size() > 0 ? std::max(least[i], rows_.size()[i]) : rows_.size()[i];
     if (error > 0) momentum_level_ = std::max(momentum_level_, error / (momentum_noise * size));
   }
 }

@@ -139,6 +139,7 @@ class StageEquations {
   template <LaneCount K>
   void measure_rows();
   void find_reach();
+  void start_rows();
 
   Interleaved Z_, MdX_;      // coordinates and M dX_j of nodes 2..s
   Interleaved applied_, f_;  // impulses of the applied forces and of all forces on nodes 1..s-1
@@ -169,7 +170,7 @@ class StageEquations {
   std::optional<bool> held_;
   double least_mass_ = 0, steepest_ = 0;  // smallest M_ii; largest sum over k of |l_k'(tau_j)|
   RowNoise rows_;                         // the same row by row, where that makes a difference
-  // The noise of each row goes by a reach of its own: some nodes are far from the origin, or there are parts.
+  // Some nodes are so far from the origin that the noise of each row goes by its own reach.
   bool far_ = false;
   double shortest_ = 0;  // length of a constraint
   VectorXd row_reach_;

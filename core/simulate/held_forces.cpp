@@ -25,7 +25,10 @@ void OneSided::follow(const Model& model, const State& state) {
     followed_.emplace(model.system);
     index1_ = std::make_unique<Index1>(*followed_);
     parts_.emplace(model.system);
-    parts_->join_by_forces(model.system, state);
+    VectorXd q(model.system.coordinates()), v(q.size());
+    model.system.expand(state.z, q);
+    model.system.expand_rate(state.w, v);
+    parts_->join_by_forces(model.system, state.t, q, v);
   }
   followed_->follow(state);
   acceleration_.resize(state.z.size());

@@ -128,7 +128,9 @@ VectorXd PushResponses::largest_multipliers(const State& state, const VectorXd& 
   SparseRows pushes(size(), system_.solved_coordinates());
   pushes.setFromTriplets(entries.begin(), entries.end());
   IndependentParts parts(system_);
-  parts.join_by_forces(system_, state);
+  VectorXd v(q_.size());
+  system_.expand_rate(state.w, v);
+  parts.join_by_forces(system_, state.t, q_, v);
   parts.join(pushes);
   const VectorXd most = parts.largest_of_rows(lambda);
   VectorXd out = VectorXd::Constant(size(), lambda.lpNorm<Eigen::Infinity>());

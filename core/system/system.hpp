@@ -72,6 +72,11 @@ class System {
   void reduce_force(const ConstVec& f, MutVec r) const;  // r = B^T f
   void reduce_sizes(const ConstVec& f, MutVec r) const;  // r = |B|^T |f|: what may cancel in B^T f
 
+  // Where, for each solved coordinate, the node coordinates stand of all nodes that it moves and, at this
+  // moment, of those that the forces on these depend on: the pattern of a matrix (allocates).
+  SparseRows felt_coordinates() const;
+  SparseRows felt_coordinates(double t, const ConstVec& q, const ConstVec& v) const;
+
   const SparseRows& mass() const;       // of z, symmetric positive definite, constant [kg]
   const SparseRows& node_mass() const;  // of q [kg]
 
@@ -179,6 +184,7 @@ class System {
   VectorXd all_lengths() const;
 
  private:
+  SparseRows felt(ForceDerivative by_nodes) const;
   struct Data;
   struct Constant {
     VectorXd loads, force;  // force: of all that does not depend on t, q or v, loads among it [N]

@@ -61,6 +61,28 @@ void System::force_derivatives(double t, const ConstVec& q, const ConstVec& v,
   for (const auto& block : data_->forces) block->derivatives(moment(t), q.data(), v.data(), by_q, by_v);
 }
 
+SparseRows System::felt_coordinates() const {
+  return felt({});
+}
+
+SparseRows System::felt_coordinates(double t, const ConstVec& q, const ConstVec& v) const {
+  ForceDerivative by_nodes;
+  by_nodes.keeps_places = true;
+  for (const auto& block : data_->forces)
+    block->derivatives(moment(t), q.data(), v.data(), by_nodes, by_nodes);
+  return felt(std::move(by_nodes));
+}
+
+SparseRows System::felt(ForceDerivative by_nodes) const {
+  for (int i = 0; i < data_->coordinates; ++i) by_nodes.emplace_back(i, i, 1.0);
+  std::vector<Eigen::Triplet<double>> whole;  // coordinates stand with the others of their node
+  for (const auto& e : by_nodes)
+    for (int k = 0; k < 3; ++k) whole.emplace_back(e.row(), e.col() - e.col() % 3 + k, 1.0);
+  SparseRows A(data_->coordinates, data_->coordinates);
+  A.setFromTriplets(whole.begin(), whole.end());
+  return data_->B_transposed * A;
+}
+
 SparseRows System::giving_rod_directions(const ConstVec& q) const {
   ForceDerivative by_q;
   if (data_->elastic_rods) data_->elastic_rods->directions(q.data(), by_q);
