@@ -140,6 +140,7 @@ class Dvm final : public Integrator {
     int without_gain = 0;
   };
   bool needs_care();
+  bool some_part_needs_care();
   bool nothing_moves(std::vector<Stall>& stalls, double enough, int patience) const;
   bool ends_weakly(StepReport& report);
   bool tight_iterations(const State& state, StepReport& report);
@@ -190,8 +191,9 @@ class Dvm final : public Integrator {
   Settling settling_;
   bool stiff_ = false;  // forces are too stiff at this step for an iteration that knows nothing of them
   bool steerable_ = false;
-  bool steered_ = false;  // corrections know of the forces, by steering_
-  bool frozen_ = false;   // saddle_ holds a factorisation near the present pose
+  bool steered_ = false;   // corrections know of the forces, by steering_
+  bool by_parts_ = false;  // of the care of this step: the parts' own motions ask for it
+  bool frozen_ = false;    // saddle_ holds a factorisation near the present pose
 
   double harmless_ = harmless;
   double needed_pivot_ = 0;  // of the weakest mode, for this step to do without care

@@ -8,12 +8,7 @@ namespace unfurl {
 // to a dead centre, where the motion is small and the constraints hold it by small angles.
 bool Dvm::needs_care() {
   if (!frozen_ || eq_.phi.rows() == 0) return false;
-  if (eq_.parts.several()) {
-    const VectorXd motions = eq_.parts.largest(eq_.dX.data(), c_.s - 1);
-    const PartSizes::Care care = eq_.parts.care(saddle_, motions, harmless_, strong);
-    needed_pivot_ = care.always ? strong * strong : care.pivot;
-    return needed_pivot_ > 0 && (saddle_.weakest_pivot(needed_pivot_) < needed_pivot_ || care.always);
-  }
+  by_parts_ = false;
   const double motion = largest_magnitude(eq_.dX.data(), eq_.dX.size());
   const double reach =
       std::max(eq_.start_pose().lpNorm<Eigen::Infinity>(), system_.constraint_lengths().maxCoeff());
@@ -24,7 +19,17 @@ bool Dvm::needs_care() {
     saddle_.weakest_pivot(needed_pivot_);
     return true;
   }
-  return saddle_.weakest_pivot(needed_pivot_) < needed_pivot_;
+  if (saddle_.weakest_pivot(needed_pivot_) < needed_pivot_) return true;
+  return eq_.parts.several() && some_part_needs_care();
+}
+
+// By its own motion, beside others that are faster.
+bool Dvm::some_part_needs_care() {
+  const VectorXd motions = eq_.parts.largest(eq_.dX.data(), c_.s - 1);
+  const PartSizes::Care care = eq_.parts.care(saddle_, motions, harmless_, strong);
+  needed_pivot_ = care.always ? strong * strong : care.pivot;
+  return by_parts_ =
+             needed_pivot_ > 0 && (saddle_.weakest_pivot(needed_pivot_) < needed_pivot_ || care.always);
 }
 
 // Whether the last correction was nothing beside the motion, or no longer gains, in every part by itself.
@@ -35,7 +40,7 @@ bool Dvm::nothing_moves(std::vector<Stall>& stalls, double enough, int patience)
     return size <= enough * motion || stall.without_gain >= patience;
   };
   const IndependentParts& parts = eq_.parts;
-  if (!parts.several())
+  if (!by_parts_)
     return done(stalls[0], largest_magnitude(rhs_f_.data(), eq_.dX.size()),
                 largest_magnitude(eq_.dX.data(), eq_.dX.size()));
   const VectorXd sizes = parts.largest(rhs_f_.data(), c_.s - 1),

@@ -46,10 +46,12 @@ PartSizes::Care PartSizes::care(const SaddleSolver& saddle, const VectorXd& moti
   const VectorXd& lengths = system_.constraint_lengths();
   const VectorXd length = largest_of_rows(lengths), row = largest_of_rows(saddle.row_scale()),
                  column = largest(saddle.column_scale().data());
+  const double whole = q_.lpNorm<Eigen::Infinity>();
   Care out;
   for (Index r = 0; r < lengths.size(); ++r) {
     const Index p = of_row(r);
-    const double reach = std::max(part_reach_[p], length[p]),
+    const double far = whole <= far_reach * shortest_[p] ? whole : part_reach_[p],
+                 reach = std::max(far, length[p]),
                  sigma = row[p] * column[p] * 2 * unit * reach / std::max(harmless * motion[p], 1e-300),
                  own = std::pow(std::min(sigma, strong), 2);
     out.always = out.always || (sigma > 1 && motion[p] > unit * reach);

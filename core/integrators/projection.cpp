@@ -20,30 +20,21 @@ Projection::Projection(const System& system, double regularisation)
     : system_(system),
       G_(system.jacobian_pattern()),
       saddle_(system.mass(), G_, 1, regularisation),
-      rows_(system),
-      parts_(system) {
+      rows_(system) {
   q_.setZero(system.coordinates());
   for (VectorXd* v : {&phi_, &offset_, &y_}) v->setZero(system.constraints());
   for (VectorXd* v : {&force_, &x_, &move_}) v->setZero(system.solved_coordinates());
-}
-
-void Projection::start_parts() {
-  parts_.start(q_);
-  rows_.start_with(parts_.reaches());
 }
 
 double Projection::level() {
   const double reach = q_.lpNorm<Eigen::Infinity>();
   const VectorXd& lengths = system_.constraint_lengths();
   const bool far = lengths.size() > 0 && reach > far_reach * lengths.minCoeff();
-  if (parts_.several())
-    start_parts();
-  else if (far)
-    rows_.start(q_);
+  if (far) rows_.start(q_);
   double worst = 0;
   for (Index r = 0; r < phi_.size(); ++r) {
-    const double own = parts_.several() ? parts_.reach(r, rows_) : far ? rows_.reach(r) : reach;
-    const double noise = 2 * std::numeric_limits<double>::epsilon() * std::max(lengths[r], own);
+    const double noise =
+        2 * std::numeric_limits<double>::epsilon() * std::max(lengths[r], far ? rows_.reach(r) : reach);
     const double ratio = std::abs(phi_[r]) / noise;
     if (!(ratio <= worst)) worst = ratio;  // NaN too
   }
@@ -56,12 +47,6 @@ bool Projection::needs_care(const VectorXd& z0, const VectorXd& z) {
   system_.expand(z0, q_);
   system_.jacobian(q_, G_, scratch_);
   if (phi_.size() == 0 || !saddle_.factorise(G_)) return false;
-  if (parts_.several()) {
-    start_parts();
-    const VectorXd motion = parts_.largest((z - z0).eval().data());
-    const double pivot = parts_.care(saddle_, motion, harmless, strong).pivot;
-    return pivot > 0 && saddle_.weakest_pivot(pivot) < pivot;
-  }
   const double reach = std::max(q_.lpNorm<Eigen::Infinity>(), system_.constraint_lengths().maxCoeff());
   const double motion = std::max((z - z0).lpNorm<Eigen::Infinity>(), 1e-300);
   const double needed =

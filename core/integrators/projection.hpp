@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/integrators/constraint_increment.hpp"
-#include "core/integrators/part_sizes.hpp"
+#include "core/integrators/row_noise.hpp"
 #include "core/math/saddle_solver.hpp"
 #include "core/system/system.hpp"
 
@@ -35,14 +35,12 @@ class Projection {
  private:
   bool needs_care(const VectorXd& z0, const VectorXd& z);
   bool reach(double t0, double t, VectorXd& move);
-  void start_parts();
   double level();  // of phi_: 1 is what rounding the coordinates leaves
   const System& system_;
   SparseRows G_;
   std::vector<double> scratch_;
   SaddleSolver saddle_;
   RowNoise rows_;
-  PartSizes parts_;
   std::unique_ptr<ConstraintIncrement> increment_;  // made when first needed
   VectorXd q_, phi_, force_, offset_, x_, y_, move_;
   int iterations_ = 0;
