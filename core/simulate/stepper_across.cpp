@@ -280,12 +280,13 @@ std::optional<AroundPose> Stepper::Loop::end_in_pose(Probe& to, double h, const 
 
 // So near a flat pose in which drives come to rest for good steps are of rounding: it is gone there at once.
 bool Stepper::Loop::goes_flat(Probe& to, double& h) {
-  constexpr double soon = 1e-2, still = 1e-9;  // [m] of a drive's row, in all and in a step
+  constexpr double soon = 1e-2;   // of the structure's size, of a drive's row
+  constexpr double still = 1e-9;  // [m], of a drive's row in a step
   constexpr double near = stepping::singular_margin * stepping::singular_margin, flat = 1e-13;
   const double edge = system().drives().empty() ? until_ : grid_.next_edge(now().t);
   const bool slows = std::ranges::any_of(system().drives(), [&](const Drive& drive) {
     const double left = drive.scale * std::abs(drive.target(edge) - drive.target(now().t));
-    return 0 < left && left < soon &&
+    return 0 < left && left < soon * reference_length(base_->structure) &&
            drive.scale * std::abs(drive.target.derivative(1, edge)) * run_.options.step <= still;
   });
   if (!slows || edge > until_ || in_pose(now().t)) return false;
