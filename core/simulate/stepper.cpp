@@ -260,6 +260,7 @@ bool Stepper::Loop::go_to(Crossing crossing) {
     if (!stays_in_pose(crossing.probe) && !led_way_ && ends_in_pose(crossing.probe))
       end_in_pose(crossing.probe, crossing.probe.at);
     crossing.probe.state.t = t;
+    go_led_way(t);
     come_nearer(crossing.probe.state);
     go_on(std::move(crossing.probe.state), crossing.probe.report);
     integrator_->restart();

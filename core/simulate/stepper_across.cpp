@@ -418,10 +418,19 @@ bool Stepper::Loop::stays_in_pose(Probe& to) {
   return true;
 }
 
+// The grid's states on the way to where it is gone at once.
+void Stepper::Loop::go_led_way(double t) {
+  if (!led_way_ || !in_pose_ || !(in_pose_->t > now().t)) return;
+  for (double next = grid_.next(now().t).t; next < before_jump(t) && next > now().t;
+       next = grid_.next(now().t).t)
+    go_on(led_way_(next), {});
+}
+
 // The end of a part of a step.
 bool Stepper::Loop::accept(Probe& to, double t) {
   if (!to.report.ok()) return fail(may_cross(0) ? stepping::too_near : reason(to.report.status), true);
   to.state.t = t;
+  go_led_way(t);
   stays_in_pose(to);
   have_begin_ = to.margins.size() > 0;
   if (have_begin_) begin_ = to;

@@ -386,7 +386,6 @@ class Stepper::Loop {
     system().expand(state.z, q_);
     return deployment_.remaining(q_, state.angles);
   }
-
   bool crosses(const State& next) {
     if (deployment_.empty() || deployed_) return false;
     const double before = fold(now()), after = fold(next);
@@ -435,6 +434,7 @@ class Stepper::Loop {
   std::optional<AroundPose> around_pose(double t, bool led, Samples samples) const;
   std::optional<AroundPose> end_in_pose(Probe& to, double h, const VectorXd& lambda = {});
   bool goes_flat(Probe& to, double& h);
+  void go_led_way(double t);
   bool in_pose(double t) const;
   bool stays_in_pose(Probe& to);
   VectorXd find_resting(double t);
