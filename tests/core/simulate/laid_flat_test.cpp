@@ -80,8 +80,10 @@ TEST_CASE("every state of a linkage that a drive lays flat for good is where it 
     const Simulation run = run_scene(custom + linkage("P", 0, 0, how.duration) + weight,
                                      of(how.stages, how.step, how.duration + 0.1));
     REQUIRE(run.status == RunStatus::completed);
-    for (std::size_t i = 0; i < run.trajectory.size(); ++i)
+    for (std::size_t i = 0; i < run.trajectory.size(); ++i) {
       CHECK(off(run.trajectory, i, "P", 0, how.duration) < told);
+      if (i > 0) CHECK(run.trajectory.time(i) - run.trajectory.time(i - 1) < 1.001 * how.step);
+    }
   }
 }
 
