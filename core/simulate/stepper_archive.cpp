@@ -74,7 +74,7 @@ void Stepper::Loop::archive(Archive& archive) {
   archive(turned_);
   for (double* x : {&target_, &part_end_, &last_step_, &swing_, &crowd_time_, &unwatched_until_, &margin_})
     archive(*x);
-  for (bool* x : {&deployed_, &ended_, &regular_, &contradictions_}) archive(*x);
+  for (bool* x : {&deployed_, &ended_, &regular_, &rest_ahead_, &contradictions_}) archive(*x);
   bool in_pose = in_pose_.has_value();
   archive(in_pose);
   if (in_pose && archive.reading()) in_pose_.emplace();
