@@ -20,7 +20,7 @@ namespace {
 
 constexpr int before_it = 8, behind_it = 6, before_rest = 12;  // states on both sides, or before alone
 constexpr double lost_rank = 1e-10;                            // the square of a singular value
-constexpr double settled = 1e-8;                               // of the structure's size
+constexpr double agreed = 1e-8;                                // of the structure's size
 
 // How weakly rows hold a pose.
 class WeakRows {
@@ -211,7 +211,7 @@ std::optional<AroundPose> Stepper::Loop::around_pose(double t, bool led, Samples
   const std::shared_ptr<const Model> smooth = smooth_model(now().t);
   const auto integrator = fresh_integrator(*find_method(run_.options.method), smooth->system);
   const double size = reference_length(base_->structure);
-  double least = (rests ? to_rest : settled) * size;
+  double least = (rests ? to_rest : agreed) * size;
   std::optional<AroundPose> best;
   for (const double share : {1.0, 0.87, 0.73, 0.61, 0.5, 0.42, 0.36, 0.3, 0.25}) {
     if (share < 1 && !rests) break;
@@ -299,7 +299,7 @@ bool Stepper::Loop::goes_flat(Probe& to, double& h) {
   std::optional<AroundPose> around = end_in_pose(there, end - now().t);
   const bool other =
       around && !deployed_ && !deployment_.empty() && (crosses(there.state) || fold(there.state) <= margin_);
-  const double most = settled * reference_length(base_->structure);
+  const double most = agreed * reference_length(base_->structure);
   if (!around || other || (solved && around->off > most) || resting_.empty() ||
       rows.below(there.state, flat) <= rows.below(clear_of(edge, led_since()), flat))
     return in_pose_.reset(), resting_.clear(), false;
