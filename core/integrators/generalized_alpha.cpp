@@ -222,7 +222,7 @@ double GeneralizedAlpha::momentum_level(double h, double reach, bool far) {
   const double size =
       std::max({residual_size_, most(inertia_), most(lambda_), stiffness_ * way, damping_ * speed, 1e-300});
   if (!far && h * h * size <= harmless_noise * least_mass_ * reach) return most(residual_) / (8 * ulp * size);
-  parts_.several() ? rows_.start_with(parts_.reaches()) : rows_.start(q_);
+  if (!parts_.several()) rows_.start(q_);
   rows_.add_forces(applied_);
   rows_.add_multipliers(lambda_, 1.0);
   rows_.add_inertia(acceleration_, 1.0);

@@ -15,12 +15,16 @@
 #include "render/scene/film_style.hpp"
 #include "render/scene/look.hpp"
 #include "render/scene/view.hpp"
+#include "tests/support/color_distance.hpp"
 
 using namespace unfurl;
 
 namespace frame_overlay_test {
 
 namespace {
+
+using testing::distance;
+using testing::told_apart;
 
 DrawList picture(const std::string& structure, const std::string& render) {
   const Scene scene = read_scene_text(structure + "[render]\n" + render, "ring.toml");
@@ -33,19 +37,6 @@ DrawList picture(const std::string& structure, const std::string& render) {
 
 DrawList ring(const std::string& render) {
   return picture("structure.kind = \"hoop\"\nstructure.fold_angle = 85.0\nsolver.end_time = 10.0\n", render);
-}
-
-double distance(const Color& a, const Color& b) {
-  return std::hypot(static_cast<double>(a.r - b.r), static_cast<double>(a.g - b.g),
-                    static_cast<double>(a.b - b.b));
-}
-
-// Groups of rods are told apart: so are colours as far from each other as the two groups that are nearest.
-double told_apart(const Look& look) {
-  double least = 1;
-  for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = 0; j < i; ++j) least = std::min(least, distance(look.group(i), look.group(j)));
-  return least;
 }
 
 bool overlap(const TextLabel& a, const TextLabel& b) {

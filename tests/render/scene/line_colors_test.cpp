@@ -12,6 +12,7 @@
 #include "render/scene/film_style.hpp"
 #include "render/scene/look.hpp"
 #include "render/scene/rod_field.hpp"
+#include "tests/support/color_distance.hpp"
 
 using namespace unfurl;
 
@@ -19,18 +20,8 @@ namespace line_colors_test {
 
 namespace {
 
-double distance(const Color& a, const Color& b) {
-  return std::hypot(static_cast<double>(a.r - b.r), static_cast<double>(a.g - b.g),
-                    static_cast<double>(a.b - b.b));
-}
-
-// Groups of rods are told apart: so are colours as far from each other as the two groups that are nearest.
-double told_apart(const Look& look) {
-  double least = 1;
-  for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = 0; j < i; ++j) least = std::min(least, distance(look.group(i), look.group(j)));
-  return least;
-}
+using testing::distance;
+using testing::told_apart;
 
 const TextLabel* label(const DrawList& list, const std::string& text) {
   const auto found = std::ranges::find(list.labels, text, &TextLabel::text);
