@@ -237,7 +237,8 @@ class Coplanar final : public Alignment {
         from_nodes.block<3, 3>(3 * k, 0) = -Mat3::Identity();
         from_nodes.block<3, 3>(3 * k, 3 * k + 3) = Mat3::Identity();
       }
-      const Eigen::Matrix<double, 12, 12> by_nodes = from_nodes.transpose() * H * from_nodes;
+      const Eigen::Matrix<double, 12, 9> rows = from_nodes.transpose().lazyProduct(H);
+      const Eigen::Matrix<double, 12, 12> by_nodes = rows.lazyProduct(from_nodes);
       hess = std::copy_n(by_nodes.data(), 144, hess);
     }
   }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/diagnostics/damped_rods.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "core/forces/elastic_rods.hpp"
 #include "core/math/barycentric.hpp"
+#include "core/math/factors.hpp"
 
 namespace unfurl {
 namespace {
@@ -58,8 +58,10 @@ double DampedRods::taken(const System& system, const State& a, const State& b, c
     const auto row = static_cast<Index>(i);
     const double start = across_rod(rod, q).norm() - rod.rest_length(a.t);
     const MatrixXd both = MatrixXd::Identity(points, points) + rod.damping_time * of_points;
-    const VectorXd stretch = both.partialPivLu().solve(VectorXd(
-        rod.compliance() * b.stage_tension.row(row).transpose() - rod.damping_time * start * of_start));
+    DenseLu factors;
+    factors.compute(both);
+    const VectorXd stretch = factors.solve(VectorXd(rod.compliance() * b.stage_tension.row(row).transpose() -
+                                                    rod.damping_time * start * of_start));
     const VectorXd rate = of_points * stretch + start * of_start;
     sum += h * coefficients_[i] * rule.weights.dot(rate.cwiseAbs2());
   }

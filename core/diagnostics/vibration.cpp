@@ -31,9 +31,21 @@ MatrixXd null_space(const MatrixXd& A) {
   return column_complement(A.transpose(), no_rank);
 }
 
+// A B C: products of products take a compiler a second each.
+MatrixXd product(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C) {
+  const MatrixXd AB = A * B;
+  return AB * C;
+}
+
+// X^T K X.
+MatrixXd congruent(const MatrixXd& K, const MatrixXd& X) {
+  const MatrixXd left = X.transpose() * K;
+  return left * X;
+}
+
 // X with X^T M X = 1 for the columns' span.
 MatrixXd orthonormal(const MatrixXd& X, const MatrixXd& M) {
-  return Cholesky(X.transpose() * M * X).solve_lower(X.transpose()).transpose();
+  return Cholesky(congruent(M, X)).solve_lower(X.transpose()).transpose();
 }
 
 MatrixXd symmetric(const MatrixXd& A) {
@@ -178,11 +190,12 @@ class AtPose {
       for (Index k = 0; k < mechanism.cols(); ++k)
         if (std::abs(of_mechanism(r, k)) <= no_turn * g.row(r).norm() * mechanism.col(k).norm())
           of_mechanism(r, k) = 0;
-    const auto k = bent_.stiffness.asDiagonal();
-    const MatrixXd drawn = of_mechanism * mechanism.transpose() * mass, own = g - drawn,
-                   mixed = own.transpose() * k * drawn;
-    elastic += own.transpose() * k * own;
-    geometric += mixed + mixed.transpose() + drawn.transpose() * k * drawn;
+    const MatrixXd drawn = product(of_mechanism, mechanism.transpose(), mass), own = g - drawn,
+                   pulls = bent_.stiffness.asDiagonal() * own, mixed = pulls.transpose() * drawn,
+                   drawn_pulls = bent_.stiffness.asDiagonal() * drawn;
+    elastic += pulls.transpose() * own;
+    geometric += mixed + mixed.transpose();
+    geometric += drawn_pulls.transpose() * drawn;
     for (Index r = 0; r < g.rows(); ++r)  // of which the system has all
       if (bent_.bent[static_cast<std::size_t>(r)])
         geometric -= bent_.stiffness[r] * g.row(r).transpose() * g.row(r);
@@ -207,7 +220,7 @@ struct Solved {
 // Stiffness with a part that has no potential: K is not symmetric, and of a pair of complex w^2 the real and
 // the imaginary part of x are the vectors. N0, Z: orthonormal in the mass metric.
 Solved solve_general(const AtPose& at, const MatrixXd& N0, const MatrixXd& Z) {
-  const MatrixXd A = Z.transpose() * (at.elastic + at.geometric + at.skew) * Z;
+  const MatrixXd A = congruent(at.elastic + at.geometric + at.skew, Z);
   const ComplexEigen all = complex_eigen(A);
   const double zero = rounded * A.norm();
   std::vector<Index> order;
@@ -216,9 +229,9 @@ Solved solve_general(const AtPose& at, const MatrixXd& N0, const MatrixXd& Z) {
     return std::pair(all.values[a].real(), a) < std::pair(all.values[b].real(), b);
   });
   VectorXd share(all.values.size());
+  const MatrixXd by_mass = product(N0.transpose(), at.mass, Z);
   for (Index k = 0; k < share.size(); ++k)
-    share[k] =
-        (N0.transpose() * at.mass * Z * all.vectors.col(k)).squaredNorm() / all.vectors.col(k).squaredNorm();
+    share[k] = (by_mass * all.vectors.col(k)).squaredNorm() / all.vectors.col(k).squaredNorm();
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return share[a] > share[b]; });
   const auto by_stiffness = [&](Index a, Index b) {
     const std::complex<double> x = all.values[a], y = all.values[b];
@@ -240,17 +253,17 @@ Solved solve_general(const AtPose& at, const MatrixXd& N0, const MatrixXd& Z) {
 Solved solve(const AtPose& at) {
   const MatrixXd &N0 = at.mechanism, Z = orthonormal(null_space(at.rigid_rows), at.mass);
   if (Z.cols() == 0) return {};  // a drive holds all that could move
-  if ((Z.transpose() * at.skew * Z).norm() > no_potential * (Z.transpose() * at.geometric * Z).norm())
+  if (congruent(at.skew, Z).norm() > no_potential * congruent(at.geometric, Z).norm())
     return solve_general(at, N0, Z);
   const MatrixXd K = at.elastic + at.geometric;
-  const SymmetricEigen all = symmetric_eigen(symmetric(Z.transpose() * K * Z));
+  const SymmetricEigen all = symmetric_eigen(symmetric(congruent(K, Z)));
   const MatrixXd X = Z * all.vectors;
   Solved out;
   out.mechanism = N0.cols();
   std::vector<Index> order(static_cast<std::size_t>(X.cols()));
   std::iota(order.begin(), order.end(), Index{0});
   // What lies in the span of N_0 to first order is the mechanism's.
-  const VectorXd share = (N0.transpose() * at.mass * X).colwise().squaredNorm().transpose();
+  const VectorXd share = product(N0.transpose(), at.mass, X).colwise().squaredNorm().transpose();
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return share[a] > share[b]; });
   const auto own = order.begin() + out.mechanism;
   std::sort(order.begin(), own);
@@ -264,24 +277,24 @@ Solved solve(const AtPose& at) {
   const MatrixXd N1 = out.vectors.rightCols(X.cols() - out.mechanism);
   MatrixXd drawn = N0;
   if (N1.cols() > 0) {
-    const MatrixXd B = N1 - N0 * (N0.transpose() * at.mass * N1);
+    const MatrixXd B = N1 - N0 * product(N0.transpose(), at.mass, N1);
     DenseLu K11;
-    K11.compute(symmetric(B.transpose() * K * B));
-    drawn -= B * K11.solve(MatrixXd(B.transpose() * at.geometric * N0));
+    K11.compute(symmetric(congruent(K, B)));
+    drawn -= B * K11.solve(product(B.transpose(), at.geometric, N0));
   }
   // drawn^T K drawn without the round-off of N_0^T elastic, which is zero.
-  const MatrixXd stretched = drawn - N0, small = drawn.transpose() * at.geometric * drawn +
-                                                 stretched.transpose() * at.elastic * stretched;
-  const MatrixXd to_unit = Cholesky(drawn.transpose() * at.mass * drawn)
-                               .solve_lower(MatrixXd::Identity(out.mechanism, out.mechanism));
+  const MatrixXd stretched = drawn - N0,
+                 small = congruent(at.geometric, drawn) + congruent(at.elastic, stretched);
+  const MatrixXd to_unit =
+      Cholesky(congruent(at.mass, drawn)).solve_lower(MatrixXd::Identity(out.mechanism, out.mechanism));
   const SymmetricEigen own_motions =
-      symmetric_eigen(symmetric(to_unit * symmetric(small) * to_unit.transpose()));
+      symmetric_eigen(symmetric(product(to_unit, symmetric(small), to_unit.transpose())));
   const double lowest = N1.cols() > 0 ? out.squares[static_cast<std::size_t>(out.mechanism)].real()
                                       : std::numeric_limits<double>::infinity();
   if (!(largest_magnitude_of(own_motions.values) < far_below * lowest)) return out;
-  const VectorXd pulls = symmetric_eigenvalues(symmetric(Z.transpose() * at.geometric * Z));
+  const VectorXd pulls = symmetric_eigenvalues(symmetric(congruent(at.geometric, Z)));
   const double zero = nothing * std::max(at.pull, largest_magnitude_of(pulls));
-  out.vectors.leftCols(out.mechanism) = drawn * to_unit.transpose() * own_motions.vectors;
+  out.vectors.leftCols(out.mechanism) = product(drawn, to_unit.transpose(), own_motions.vectors);
   // A spring on what the motion does not change cancels in it, but for the rounding of its terms.
   constexpr double digits = 64 * std::numeric_limits<double>::epsilon();
   const MatrixXd terms = at.geometric.cwiseAbs();

@@ -140,7 +140,8 @@ class Bending final : public ForceBlock {
     D << -one, one, none, none, -one, one;
     for (const Joint& joint : joints_) {
       const auto enter = [&](const Mat6& by_sides, ForceDerivative& by) {
-        const Eigen::Matrix<double, 9, 9> K = -D.transpose() * by_sides * D;
+        const Eigen::Matrix<double, 6, 9> rows = -by_sides.lazyProduct(D);
+        const Eigen::Matrix<double, 9, 9> K = D.transpose().lazyProduct(rows);
         for (int i = 0; i < 9; ++i)
           for (int j = 0; j < 9; ++j) by.emplace_back(joint.coordinate(i), joint.coordinate(j), K(i, j));
       };
@@ -149,7 +150,8 @@ class Bending final : public ForceBlock {
       if (!(joint.damping > 0)) continue;
       const BendRate rate(bend, joint.sides(v));
       enter(joint.damping * rate.by_place(), by_q);
-      enter(joint.damping * rate.B.transpose() * rate.W * rate.B, by_v);
+      const Mat36 WB = joint.damping * rate.W * rate.B;
+      enter(rate.B.transpose() * WB, by_v);
     }
   }
 

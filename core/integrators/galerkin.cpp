@@ -9,7 +9,8 @@ GalerkinCoefficients::GalerkinCoefficients(std::string_view family, int stages)
   // s points integrate l_k' l_i' (degree 2 s - 4) and l_k (degree s - 1) exactly.
   take(gauss_legendre(s));
   b = value * weight;
-  K = slope * weight.asDiagonal() * slope.transpose();
+  const MatrixXd weighed = slope * weight.asDiagonal();
+  K = weighed * slope.transpose();
   take(gauss_legendre(s - 1));
   tau_to_end = Barycentric(tau).values(1.0);
   C = K.topRightCorner(s - 1, s - 1);

@@ -17,9 +17,9 @@ constexpr int most_gradients = 60;
 
 StiffCorrection::StiffCorrection(const GalerkinCoefficients& c, Index coordinates, Index constraints)
     : stages_(c.s - 1) {
-  const MatrixXd B =
-      c.value.topRows(stages_) * c.weight.asDiagonal() * c.slope.bottomRows(stages_).transpose();
-  const ComplexEigen eigen = complex_eigen(-c.C_inverse * B);
+  const MatrixXd value = c.value.topRows(stages_) * c.weight.asDiagonal(),
+                 slope = c.slope.bottomRows(stages_), B = value * slope.transpose();
+  const ComplexEigen eigen = complex_eigen(-(c.C_inverse * B));
   for (Index k = 0; k < stages_; ++k) {
     const Complex zeta = eigen.values[k];
     if (zeta.imag() < 0) continue;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Elastic rods whose waves turn many times in a step: what they carry moves as it should.
-#include <Eigen/QR>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -150,7 +149,7 @@ VectorXd forces_of_cranks(double angle, const Structure& s) {
   add(6, 1, 1);
   // Least N^T C N: y = C^1/2 N of least norm. The equations have rank 7: cranks cannot brake.
   const VectorXd weights = compliance.cwiseSqrt().cwiseInverse();
-  return weights.cwiseProduct((pulls * weights.asDiagonal()).completeOrthogonalDecomposition().solve(needed));
+  return weights.cwiseProduct(least_squares(pulls * weights.asDiagonal(), needed));
 }
 
 TEST_CASE("redundant elastic rods share by their elasticity where steps stop their waves") {
