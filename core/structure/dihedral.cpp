@@ -191,8 +191,8 @@ void dihedral_hessian(const double* q, const std::vector<int>& stencil, double* 
           (r2 * r2);
   static const Mat9x12 by_x = edges_by_nodes();
   Eigen::Map<Eigen::Matrix<double, 12, 12>> by_nodes(hess);
-  const Eigen::Matrix<double, 12, 9> rows = by_x.transpose().lazyProduct(h);
-  by_nodes = rows.lazyProduct(by_x);
+  const Eigen::Matrix<double, 12, 9> rows = by_x.transpose() * h;
+  by_nodes = rows * by_x;
 }
 
 double dihedral_curvature(const double* q, const double* v, const std::vector<int>& stencil) {
