@@ -275,6 +275,15 @@ void leave_open(const Trajectory& trajectory, Diagnostics& out) {
   out.force_unique.bottomRows(static_cast<Index>(out.left_open)).setConstant(false);
 }
 
+// Of works what there is in the structure is named alone.
+std::string label_in(const Structure& s, const Row& row) {
+  const std::string_view name = row.name;
+  if (name == "work_J" && !motors_or_warmed(s)) return "work of the loads";
+  const auto warms = [](const Rod& rod) { return !rod.gives && rod.expansion != 0; };
+  if (name == "drive_work_J" && std::ranges::none_of(s.rods, warms)) return "work of the drives";
+  return row.label;
+}
+
 enum class Look { energies, books, states, all };
 
 // The columns of a run, filled state by state.
@@ -378,9 +387,7 @@ class StateTable {
           row.unit == std::string_view("J") || std::string_view(row.name).starts_with("constraint_");
       if (!present(row.needs, run) || (books && !book)) continue;
       used.push_back(&row);
-      const bool loads_alone =
-          std::string_view(row.name) == "work_J" && !motors_or_warmed(run.trajectory.structure());
-      out.columns.push_back({row.name, loads_alone ? "work of the loads" : row.label, row.unit, {}});
+      out.columns.push_back({row.name, label_in(run.trajectory.structure(), row), row.unit, {}});
     }
     return used;
   }

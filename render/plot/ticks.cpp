@@ -153,6 +153,12 @@ std::string format_fixed(double value, int decimals) {
   return out.find_first_not_of("0.") == std::string::npos ? out : minus + out;
 }
 
+std::string format_share(double share) {
+  constexpr double rounding = 1e-9;
+  const bool short_of_whole = share >= 0.995 && share < 1 - rounding;
+  return format_fixed(short_of_whole ? std::floor(1000 * share) / 10 : 100 * share, short_of_whole) + " %";
+}
+
 std::string format_number(double value, int digits) {
   if (!std::isfinite(value))
     return std::isnan(value) ? "not a number" : value > 0 ? "\u221E" : minus + std::string("\u221E");

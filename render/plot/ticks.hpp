@@ -31,5 +31,7 @@ std::string power_of_ten(int n);  // "10⁻¹⁵"
 std::string format_number(double value, int digits);
 // With so many decimals and a true minus sign; never "−0".
 std::string format_fixed(double value, int decimals);
+// A share of 1 in whole per cents, "85 %"; what falls short of the whole is never "100 %" but "99.7 %".
+std::string format_share(double share);
 
 }  // namespace unfurl::plot

@@ -425,8 +425,13 @@ void FrameBuilder::add_loads(const VectorXd& whole, DrawList& list) const {
   const Color color = look_->load_color(field_ && field_->diverging);
   for (const LoadCopy& load : trajectory_.structure().load_copies) {
     if (load.force == Vec3::Zero()) continue;
-    const Vec3 tail = node(whole, load.node);
-    const Vec3 head = tail + upright_ * load.force * (looks_.arrow_length / looks_.largest_force);
+    const Vec3 arrow = upright_ * load.force * (looks_.arrow_length / looks_.largest_force);
+    Vec3 tail = node(whole, load.node);
+    // From the surface of a body that would hide most of it, a canister or a large joint.
+    if (const double body = looks_.joint_radius[static_cast<std::size_t>(load.node)];
+        arrow.norm() < 1.5 * body)
+      tail += body * arrow.normalized();
+    const Vec3 head = tail + arrow;
     list.arrows.push_back(
         {tail.cast<float>(), head.cast<float>(), static_cast<float>(looks_.arrow_radius), color});
   }

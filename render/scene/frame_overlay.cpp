@@ -24,16 +24,8 @@ std::string time_text(double t, double span) {
   return text;
 }
 
-std::string deployed_text(double fraction) {
-  return "deployed " + plot::format_fixed(100 * fraction, 0) + " %";
-}
-
 std::string number_text(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", x == 0 ? 0.0 : x);
-  std::string out = text;
-  if (out.starts_with("-")) out.replace(0, 1, "\u2212");
-  return out;
+  return plot::format_number(x, 3);
 }
 
 // The largest magnitude of a column up to a time.
@@ -281,7 +273,8 @@ void FrameOverlay::add_status(double t, const VectorXd& whole, Boxes& taken, Dra
   std::vector<std::string> lines{time_text(t, trajectory_.end_time() - trajectory_.start_time())};
   const Deployment& deployment = trajectory_.structure().deployment;
   const VectorXd angles = deployment.measured ? trajectory_.state_at(t).angles : VectorXd();
-  if (!deployment.empty()) lines.push_back(deployed_text(deployment.fraction(solved(whole), angles)));
+  if (!deployment.empty())
+    lines.push_back("deployed " + plot::format_share(deployment.fraction(solved(whole), angles)));
   // In one line where there is room, each in its own where there is not, smaller where one has none.
   const float room = width_ - 2 * edge_;
   const auto width = [&](const std::string& text) {

@@ -44,8 +44,7 @@ std::vector<Shot> moments_of_deployment(const Diagnostics& d) {
     const double t = k == 0           ? d.t.front()
                      : k == poses - 1 ? d.t.back()
                                       : d.t[i - 1] + u * (d.t[i] - d.t[i - 1]);
-    moments.push_back(
-        {t, time_text(t, d.t.back() - d.t.front()) + ", " + plot::format_fixed(100 * wanted, 0) + " %"});
+    moments.push_back({t, time_text(t, d.t.back() - d.t.front()) + ", " + plot::format_share(wanted)});
   }
   return moments;
 }

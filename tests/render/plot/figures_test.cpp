@@ -242,7 +242,7 @@ TEST_CASE("the balance that the energy figure's caption writes is the one that i
        "motion = 'smooth'\nto = 0.5\nduration = 0.7\n"}};
   const std::map<std::string, std::string> own{{"damped", "energy taken by dampers and friction"},
                                                {"impact", "energy lost in impacts"},
-                                               {"driven", "work of the drives and of rigid rods that warm"}};
+                                               {"driven", "work of the drives"}};
   for (const auto& [name, more] : scenes) {
     INFO(name);
     const Run r = run_of(swinging + more);

@@ -117,4 +117,16 @@ TEST_CASE("numbers are written as people write them", "[ticks]") {
   CHECK(format_fixed(-0.04, 2) == "\u22120.04");
 }
 
+TEST_CASE("a share that falls short of the whole is not called the whole", "[ticks]") {
+  CHECK(format_share(0) == "0 %");
+  CHECK(format_share(0.854) == "85 %");
+  CHECK(format_share(-1) == "\u2212100 %");
+  CHECK(format_share(0.994) == "99 %");
+  CHECK(format_share(0.9971) == "99.7 %");
+  CHECK(format_share(0.99999) == "99.9 %");
+  CHECK(format_share(1 - 1e-12) == "100 %");  // deployed, but for rounding
+  CHECK(format_share(1.004) == "100 %");
+  CHECK(format_share(1.2) == "120 %");
+}
+
 }  // namespace unfurl::plot
