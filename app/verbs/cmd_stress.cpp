@@ -8,6 +8,7 @@
 #include "app/verbs/team_work.hpp"
 #include "core/scene/library.hpp"
 #include "core/scene/write.hpp"
+#include "core/study/reference.hpp"
 #include "core/study/stress.hpp"
 #include "render/plot/figures/stress_figures.hpp"
 
@@ -62,6 +63,8 @@ int cmd_stress(const Arguments& arguments) {
   }
   if (!found) return nothing_to_write(arguments);
   const Stress& stress = *found;
+  if (stress.complete && stress.cells.empty() && !stress.notes.empty())
+    throw ReferenceError("none of the extremes has a reference; the first is " + stress.notes.front());
   if (stress.complete && arguments.study.extremes.empty())
     session.write("stress.csv", csv_text(cells_table(stress)));
   Report report{"Stability at the extremes: " + scene.title};
@@ -76,7 +79,12 @@ int cmd_stress(const Arguments& arguments) {
   session.write("stress.md", report_markdown(report));
   results_written(team.get());
   print_rows(arguments, stress.complete, cells_table(stress));
-  return finish(stress.complete, arguments, std::to_string(stress.cells.size()) + " cells");
+  const std::size_t left_out = stress.notes.size();
+  return finish(stress.complete, arguments,
+                std::to_string(stress.cells.size()) + " cells" +
+                    (left_out == 0 ? ""
+                                   : "; values of extremes left out, as they have no reference: " +
+                                         std::to_string(left_out) + ", stress.md says why"));
 }
 
 }  // namespace unfurl

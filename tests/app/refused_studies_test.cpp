@@ -311,6 +311,18 @@ TEST_CASE("measures whose names differ in what files cannot have keep a figure e
         std::string::npos);
 }
 
+// Friction acts from the start of every motion, and no reference knows it.
+TEST_CASE("an atlas without any reference is refused and draws no figures of nothing") {
+  const ScratchDirectory dir;
+  const ProgramResult r =
+      run_program({"stress", "pendulum", "-o", dir / "out", "--set",
+                   "forces[0]={kind='friction', nodes=['bob'], direction=[0,0,1], kinetic=0.1}", "--quiet"});
+  CHECK(r.code == 4);
+  CHECK(r.err.find("none of the extremes has a reference") != std::string::npos);
+  CHECK(r.err.find("dry friction") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(dir / "out/figures"));
+}
+
 TEST_CASE("a study that is refused leaves nothing behind") {
   const ScratchDirectory dir;
   for (const std::vector<std::string>& wrong :

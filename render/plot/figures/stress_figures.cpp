@@ -73,6 +73,8 @@ void add_key(const Stress& stress, const Extreme& extreme, Panel& panel) {
 std::vector<Figure> atlas_figures(const StressPlan& plan, const Stress& stress, const std::string& scene) {
   std::vector<Figure> figures;
   for (const Extreme& extreme : plan.extremes) {
+    if (std::ranges::none_of(stress.cells, [&](const StressCell& c) { return c.extreme == extreme.name; }))
+      continue;
     Figure f;
     f.name = "atlas_" + extreme.name;
     f.title = "Stability atlas: " + scene;

@@ -351,6 +351,7 @@ TEST_CASE("figures of stress runs are in order in every style", "[figures]") {
   Journal journal({}, stress_columns(), stress_key_columns);
   const Stress stress = run_stress(plan, journal, {});
   for (const Figure& figure : atlas_figures(plan, stress, "Six-unit ring antenna")) judge(figure);
+  CHECK(atlas_figures(plan, {}, "Six-unit ring antenna").empty());  // no reference: nothing to draw
   judge(long_run_figure(long_stress(), "Ladder of four-bar windows"));
 }
 
