@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/diagnostics/columns.hpp"
 #include "core/diagnostics/peaks.hpp"
 #include "core/diagnostics/rod_peaks.hpp"
 #include "core/diagnostics/vibration.hpp"
@@ -260,7 +261,14 @@ bool force_column(std::string_view column) {
          column.ends_with("_ratio_max");
 }
 
-// "kinetic_energy_J": "kinetic energy (J)"; what stands before a dot is somebody's name.
+// What columns that every structure may have are called; works have names shorter than what is in them.
+std::string_view known_label(std::string_view column) {
+  static const std::vector<DiagnosticColumn> known = diagnostic_columns();
+  const auto of = std::ranges::find(known, column, &DiagnosticColumn::name);
+  return of == known.end() || column.ends_with("work_J") ? std::string_view() : of->label;
+}
+
+// "dissipated_J": "energy taken by dampers and friction (J)"; what stands before a dot is somebody's name.
 std::string column_label(std::string_view column) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 12> units{{{"_N_m", "N m"},
                                                                                  {"_rad_s", "rad/s"},
@@ -281,7 +289,14 @@ std::string column_label(std::string_view column) {
   const std::size_t dot = label.rfind('.');
   std::replace(label.begin() + static_cast<std::ptrdiff_t>(dot == std::string::npos ? 0 : dot), label.end(),
                '_', ' ');
+  if (const std::string_view words = known_label(column); !words.empty()) label = words;
   return with_unit(label, has ? found->second : "");
+}
+
+// "largest energy lost in impacts (J)"; the largest of what is the largest is said once.
+std::string label_of(const Statistic& s, std::string_view column) {
+  const std::string label = column_label(column);
+  return label.starts_with(s.label) ? label : std::string(s.label) + label;
 }
 
 std::string suffix(std::string_view unit) {
@@ -356,13 +371,13 @@ RunMeasure find_measure(const std::string& name, const std::vector<std::string>&
     const std::string_view flagged = flag ? base.substr(colon + 1) : std::string_view();
     if (flag && (columns.empty() || std::find(there.begin(), there.end(), flagged) != there.end()))
       return {
-          name, std::string(s.name) + "_" + of, std::string(s.label) + column_label(flagged) + " is unique",
+          name, std::string(s.name) + "_" + of, label_of(s, flagged) + " is unique",
           [of = std::string(flagged), largest = s.name == "max"](
               const Simulation& run, const Diagnostics& d) { return extreme_unique(run, d, of, largest); }};
     if (columns.empty() && of.ends_with("_unique")) there.push_back(of);
     if (std::find(there.begin(), there.end(), of) == there.end())
       throw StudyError("no column " + in_quotes(of) + " to measure" + did_you_mean(of, there));
-    return {name, std::string(s.name) + "_" + of, std::string(s.label) + column_label(of),
+    return {name, std::string(s.name) + "_" + of, label_of(s, of),
             [of, f = s.of](const Simulation& run, const Diagnostics& d) { return f(run, d, of); },
             of_method(of) ? MeasureNeeds::method : MeasureNeeds::states};
   }

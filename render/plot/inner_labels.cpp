@@ -59,28 +59,50 @@ std::vector<double> crowd(const Panel& panel, const PanelLayout& layout) {
   return named > few ? at : std::vector<double>();
 }
 
+// So many lines, as even as the words allow; another number where they do not.
+std::vector<std::string> in_lines(const std::string& text, std::size_t count) {
+  const double width = text_width(text, small_size), least = width / static_cast<double>(count);
+  std::vector<std::string> lines{text};
+  for (double room = least; room < width; room += 0.1 * least)
+    if (lines = wrap_text(text, small_size, room); lines.size() <= count) break;
+  return lines;
+}
+
+// In one line; the name of a vertical one in two or three where that hides less.
 void add_line_label(const ReferenceLine& line, const std::vector<double>& others, Obstacles& obstacles,
                     PanelLayout& out) {
   if (line.label.empty()) return;
   const Rect& frame = out.frame;
   const double at = (line.horizontal ? out.y : out.x).scale(line.value);
   const std::string text = shorten_text(line.label, small_size, frame.width() - 8);
-  const double width = text_width(text, small_size), height = (ascent + descent) * small_size;
-  std::vector<Rect> boxes = candidates(frame, line, at, width, height);
-  if (!line.horizontal)
-    std::erase_if(boxes, [&](const Rect& b) {  // with what lies between the name and its line
-      const double x0 = std::min(b.x0 - 1, at), x1 = std::max(b.x1 + 1, at);
-      return std::any_of(others.begin(), others.end(),
-                         [&](double x) { return std::abs(x - at) > 0.5 && x > x0 && x < x1; });
-    });
-  if (boxes.empty()) return;
-  const Spot spot = best_of(obstacles, boxes);
+  const auto placed = [&](const std::vector<std::string>& lines) {
+    double width = 0;
+    for (const std::string& words : lines) width = std::max(width, text_width(words, small_size));
+    const double below = line_height * static_cast<double>(lines.size() - 1);
+    std::vector<Rect> boxes = candidates(frame, line, at, width, (ascent + descent + below) * small_size);
+    if (!line.horizontal)
+      std::erase_if(boxes, [&](const Rect& b) {  // with what lies between the name and its line
+        const double x0 = std::min(b.x0 - 1, at), x1 = std::max(b.x1 + 1, at);
+        return std::any_of(others.begin(), others.end(),
+                           [&](double x) { return std::abs(x - at) > 0.5 && x > x0 && x < x1; });
+      });
+    return boxes.empty() ? Spot{{}, touches_text} : best_of(obstacles, boxes);
+  };
+  std::vector<std::string> lines{text};
+  Spot spot = placed(lines);
+  for (const std::size_t count : {std::size_t{2}, std::size_t{3}})
+    if (!line.horizontal && spot.hidden > 0)
+      if (const auto broken = in_lines(text, count); broken.size() == count)
+        if (const Spot other = placed(broken); other.hidden < spot.hidden) spot = other, lines = broken;
   if (spot.hidden >= touches_text) return;
   obstacles.add_box(spot.box);
-  out.labels.push_back({{spot.box.x0, spot.box.y0 + ascent * small_size},
-                        text,
-                        {small_size, readable(palette(line.color))},
-                        spot.hidden > 0});
+  const bool right = lines.size() > 1 && spot.box.x1 < at;  // beside its line
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    out.labels.push_back({{right ? spot.box.x1 : spot.box.x0,
+                           spot.box.y0 + (ascent + line_height * static_cast<double>(k)) * small_size},
+                          lines[k],
+                          {small_size, readable(palette(line.color)), right ? Anchor::end : Anchor::start},
+                          spot.hidden > 0});
 }
 
 // On a map the lines of a level are broken for its value, once, away from the edges and from other values.

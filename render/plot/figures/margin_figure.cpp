@@ -65,10 +65,10 @@ std::string told(const MarginLoad& load) {
 
 Figure margin_figure(const Margin& margin, const std::string& title) {
   const bool folds = margin.unit == "N m";
-  const std::string across = folds ? "fold angle (\u00B0)" : "way along the path (m kg^1/2)";
+  const std::string across = folds ? "fold angle (\u00B0)" : "way along the path (m \u221Akg)";
   Panel forces, margins;
   forces.title = "Drives above, resistances below zero";
-  forces.y.label = folds ? "torque about the fold angle (N m)" : "force along the path (N/kg^1/2)";
+  forces.y.label = folds ? "torque about the fold angle (N m)" : "force along the path (N/\u221Akg)";
   forces.x.label = margins.x.label = across;
   forces.x.shown = false;
   add_stack(margin, 1.0, forces);
@@ -106,7 +106,7 @@ Figure margin_figure(const Margin& margin, const std::string& title) {
   }
   const MarginReach& last = margin.motion.back();
   const auto place = [&](double fold_angle, double s) {
-    return plot::format_number(along(margin, fold_angle, s), 4) + (folds ? " deg" : " m kg^1/2");
+    return plot::format_number(along(margin, fold_angle, s), 4) + (folds ? "\u00B0" : " m \u221Akg");
   };
   figure.caption = "Least static margin " + words(margin.worst.margin) + " at " +
                    place(margin.worst.fold_angle, margin.worst.s) + ", least dynamic margin " +

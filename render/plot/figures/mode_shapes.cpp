@@ -114,10 +114,12 @@ Figure mode_shapes_figure(const Structure& structure, const VectorXd& positions,
   f.caption = std::string(view.flat ? "View of the plane of motion" : "Axonometric view") + " at " +
               plot::format_number(vibration.t, 4) +
               " s, the pose in grey, each mode with its largest displacement enlarged to " +
-              plot::format_number(100 * swing, 2) + " % of the size. " +
-              std::to_string(vibration.mechanism_motions) + " of all " +
-              std::to_string(vibration.modes.size()) +
-              " are motions of the mechanism: rods keep their lengths.";
+              plot::format_number(100 * swing, 2) + " % of the size. ";
+  const std::string all = std::to_string(vibration.modes.size());
+  f.caption += vibration.mechanism_motions == 0
+                   ? "None of the " + all + " is a motion of the mechanism."
+                   : std::to_string(vibration.mechanism_motions) + " of all " + all +
+                         " are motions of the mechanism: rods keep their lengths.";
   return f;
 }
 

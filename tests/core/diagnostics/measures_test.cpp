@@ -287,6 +287,13 @@ TEST_CASE("a measure that is a column by its name says how it is measured") {
   CHECK(find_measure("max:my_pin.reaction_x_N", named).label == "largest my_pin.reaction x (N)");
   CHECK(find_measure("max:hub.torque_N_m", named).label == "largest hub.torque (N m)");
   CHECK(find_measure("max:fraction", named).label == "largest fraction");
+  const auto label = [](const char* name) { return find_measure(name, {}).label; };
+  CHECK(label("max:dissipated_J") == "largest energy taken by dampers and friction (J)");
+  CHECK(label("max:constraint_max_m") == "largest constraint error (m)");
+  CHECK(label("max:axial_force_max_N") == "largest axial force (N)");
+  CHECK(label("min:axial_force_min_N") == "smallest axial force (N)");
+  CHECK(label("final:axial_force_max_N") == "final largest axial force (N)");
+  CHECK(label("max:drive_work_J") == "largest drive work (J)");
 }
 
 // Of a name with a comma the longest that is a column; without one a comma ends a name, as ever.

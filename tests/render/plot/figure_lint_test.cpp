@@ -244,4 +244,32 @@ TEST_CASE("names of many events stand at no other event's line", "[figure]") {
   }
 }
 
+// To the first event's left there is no room, and to its right no more than for half of the name.
+TEST_CASE("a long name of an event stands in two lines rather than across another event", "[figure]") {
+  Figure figure;
+  figure.width_mm = 89, figure.height_mm = 60;
+  figure.panels.resize(1);
+  Panel& panel = figure.panels[0];
+  Curve c;
+  c.x = {0, 10}, c.y = {0, 0};
+  panel.curves.push_back(c);
+  panel.y.min = -1, panel.y.max = 1;
+  for (const double at : {1.5, 3.5}) panel.lines.push_back({at, false, "slips the other way", 7});
+  const plot::PanelLayout layout = plot::lay_out(figure).panels.at(0);
+  std::string told;
+  for (const plot::Label& label : layout.labels) {
+    if (label.text.find_first_of("-0123456789") != std::string::npos) continue;
+    told += label.text + "|";
+    CHECK_FALSE(label.backed);
+    const plot::Rect box = plot::text_box(label.at, label.text, label.style);
+    for (const ReferenceLine& line : panel.lines) {
+      const double x = layout.x.scale(line.value);
+      CAPTURE(label.text, line.value);
+      CHECK((x < box.x0 || x > box.x1));
+    }
+  }
+  INFO(told);
+  CHECK(std::ranges::count(told, '|') == 3);
+}
+
 }  // namespace unfurl

@@ -32,14 +32,14 @@ TEST_CASE("the caption of a margin says how the motion ends, and none where ther
   CHECK_THAT(other, Catch::Contains("least dynamic margin none; the motion sets out the other way."));
   CHECK_THAT(caption(MarginEnd::arrives, infinite),
              Catch::Contains("least dynamic margin without bound; the motion arrives."));
-  CHECK_THAT(caption(MarginEnd::stalls, 0.0), Catch::Contains("margin 0; the motion stalls at 0.9 deg."));
+  CHECK_THAT(caption(MarginEnd::stalls, 0.0), Catch::Contains("margin 0; the motion stalls at 0.9\u00B0."));
   CHECK_THAT(caption(MarginEnd::stopped, 0.25),
-             Catch::Contains("margin 0.25; the motion ends at 0.9 deg, on the end stop bar."));
-  CHECK_THAT(caption(MarginEnd::time, 0.25), Catch::Contains("at 0.9 deg when its time is up."));
+             Catch::Contains("margin 0.25; the motion ends at 0.9\u00B0, on the end stop bar."));
+  CHECK_THAT(caption(MarginEnd::time, 0.25), Catch::Contains("at 0.9\u00B0 when its time is up."));
   // Without a fold angle both places are on the way along the path: 0.5 and 0.25.
   CHECK_THAT(caption(MarginEnd::time, 0.25, "N/kg^1/2"),
-             Catch::Contains("0.4 at 0.5 m kg^1/2, least") &&
-                 Catch::Contains("at 0.25 m kg^1/2 when its time is up."));
+             Catch::Contains("0.4 at 0.5 m \u221Akg, least") &&
+                 Catch::Contains("at 0.25 m \u221Akg when its time is up."));
 }
 
 TEST_CASE("where no margin can be drawn there is no axis of margins", "[figure]") {

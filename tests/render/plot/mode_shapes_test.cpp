@@ -31,6 +31,13 @@ TEST_CASE("a mass on springs is drawn in its modes, with and without rods", "[fi
     model->system.expand(state.z, q);
     const Figure f =
         mode_shapes_figure(model->structure, whole_positions(model->structure, q), found, "A mass");
+    CHECK_THAT(f.caption,
+               Catch::EndsWith("1 of all 1 are motions of the mechanism: rods keep their lengths."));
+    Vibration elastic = found;
+    elastic.mechanism_motions = 0;
+    CHECK_THAT(
+        mode_shapes_figure(model->structure, whole_positions(model->structure, q), elastic, "A mass").caption,
+        Catch::EndsWith("None of the 1 is a motion of the mechanism."));
     const Panel& panel = f.panels.at(0);
     // Two springs, and the rod, of the pose and of the mode.
     CHECK(panel.segments.size() == (rods ? 6 : 4));
