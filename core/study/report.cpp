@@ -19,7 +19,7 @@ body { font: 16px/1.55 system-ui, "DejaVu Sans", sans-serif; color: #222; max-wi
 h1 { font-size: 1.7rem; line-height: 1.25 } h2 { font-size: 1.25rem; margin-top: 2.2rem }
 table { border-collapse: collapse; font-size: .88rem; margin: 1rem 0; display: block; overflow-x: auto }
 th, td { padding: .3rem .7rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
-th { border-bottom: 2px solid #888 } td.n { text-align: right; font-variant-numeric: tabular-nums }
+th { border-bottom: 2px solid #888 } td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
 figure { margin: 1.5rem 0 } img { max-width: 100%; height: auto } figcaption, .caption { font-size: .88rem; color: #555 }
 pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .82rem; line-height: 1.4 }
 code { background: #f2f2f2; padding: .1em .3em; border-radius: 3px }

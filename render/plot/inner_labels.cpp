@@ -59,13 +59,17 @@ std::vector<double> crowd(const Panel& panel, const PanelLayout& layout) {
   return named > few ? at : std::vector<double>();
 }
 
-// So many lines, as even as the words allow; another number where they do not.
+// So many lines, as even as the words allow, and no word cut; none where they do not.
 std::vector<std::string> in_lines(const std::string& text, std::size_t count) {
   const double width = text_width(text, small_size), least = width / static_cast<double>(count);
-  std::vector<std::string> lines{text};
-  for (double room = least; room < width; room += 0.1 * least)
-    if (lines = wrap_text(text, small_size, room); lines.size() <= count) break;
-  return lines;
+  for (double room = least; room < width; room += 0.1 * least) {
+    const std::vector<std::string> lines = wrap_text(text, small_size, room);
+    std::string all;
+    for (const std::string& line : lines) all += (all.empty() ? "" : " ") + line;
+    if (all == text && lines.size() <= count)
+      return lines.size() == count ? lines : std::vector<std::string>();
+  }
+  return {};
 }
 
 // In one line; the name of a vertical one in two or three where that hides less.
@@ -92,7 +96,7 @@ void add_line_label(const ReferenceLine& line, const std::vector<double>& others
   Spot spot = placed(lines);
   for (const std::size_t count : {std::size_t{2}, std::size_t{3}})
     if (!line.horizontal && spot.hidden > 0)
-      if (const auto broken = in_lines(text, count); broken.size() == count)
+      if (const auto broken = in_lines(text, count); !broken.empty())
         if (const Spot other = placed(broken); other.hidden < spot.hidden) spot = other, lines = broken;
   if (spot.hidden >= touches_text) return;
   obstacles.add_box(spot.box);
