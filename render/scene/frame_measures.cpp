@@ -55,7 +55,7 @@ double FrameOverlay::footing_top() const {
       return static_cast<float>(plot::text_width(text, static_cast<double>(small_) / plot::line_height));
     };
     const std::string time =
-        trajectory_.structure().deployment.empty() ? "t = 10.00 s" : "t = 10.00 s    deployed 100 %";
+        trajectory_.structure().deployment.empty() ? "t = 10.00 s" : "t = 10.00 s    deployed 99.9 %";
     const float bar = std::max(0.16f * width_, wide("0.5 m in the middle"));
     const bool beside = !options.time || edge_ + wide(time) < 0.5f * (width_ - bar);
     up = std::max(up, edge_ + 1.35f * small_ + (beside ? 0 : small_ + 12 * unit_));

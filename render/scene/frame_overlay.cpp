@@ -331,7 +331,8 @@ std::vector<FrameOverlay::LegendEntry> FrameOverlay::legend_entries(double t, co
     if (named && lines.insert(line.group).second)
       add(false, line.group + (by_force ? ", slack" : ""),
           by_force ? look_.slack_color() : look_.line_color(line.group, field_ && field_->diverging),
-          line.group == "net" ? fine_ : std::max(2 * fine_, std::round(0.12f * small_)));
+          std::max((line.group == "net" ? 1 : 2) * fine_,
+                   std::round((line.group == "net" ? 0.06f : 0.12f) * small_)));
   }
   const bool sized = style_.options.colour_by == "axial_force" && field_;
   if (!list.arrows.empty())
