@@ -44,10 +44,26 @@ std::string packed(const auto& values) {
   return base64(std::as_bytes(std::span(values)));
 }
 
+// "6160", "\u22120.375", "1.87\u00D710\u207B\u00B9\u2074"
 std::string short_text(double x, int digits = 3) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, x);
-  return text.data();
+  std::array<char, 400> text{};
+  const bool plain = std::abs(x) >= 1 && std::abs(x) < 1e5;
+  if (plain && std::abs(x) >= std::pow(10.0, digits))
+    std::snprintf(text.data(), text.size(), "%.0f", x);
+  else
+    std::snprintf(text.data(), text.size(), "%.*g", digits, x);
+  std::string out = text.data();
+  const std::size_t e = out.find('e');
+  std::string power;
+  if (e != std::string::npos) {
+    constexpr std::array raised{"\u2070", "\u00B9", "\u00B2", "\u00B3", "\u2074",
+                                "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+    power = "\u00D710";
+    for (const char c : std::to_string(std::stoi(out.substr(e + 1))))
+      power += c == '-' ? "\u207B" : raised[static_cast<std::size_t>(c - '0')];
+    out.resize(e);
+  }
+  return (out.starts_with("-") ? "\u2212" + out.substr(1) : out) + power;
 }
 
 // Within what a browser bears.

@@ -476,7 +476,8 @@ TEST_CASE("a page says when a short run ended, and its clock shows a thousandth 
   std::ostringstream page;
   page << std::ifstream(directory / "viewer.html", std::ios::binary).rdbuf();
   fs::remove_all(directory);
-  CHECK(data_of(page.str())["facts"][0] == nlohmann::json({"ended", "completed at 1.25e-07 s"}));
+  CHECK(data_of(page.str())["facts"][0] ==
+        nlohmann::json({"ended", "completed at 1.25\u00D710\u207B\u2077 s"}));
   CHECK(page.str().find("t.toFixed(clock_digits)") != std::string::npos);
 }
 
