@@ -94,11 +94,19 @@ std::string typeset(const std::string& unit) {
   return replaced(replaced(replaced(unit, "deg", "\u00B0"), "^2", "\u00B2"), " ", "\u00B7");
 }
 
-// "structure.fold_angle": "fold angle"; "solver.step": "solver step".
+// "structure.fold_angle": "fold angle"; "solver.step": "solver step"; "forces[drag_1].damping": "drag_1
+// damping".
 std::string words(const std::string& key) {
-  constexpr std::string_view implied = "structure.";
-  const std::string text = key.starts_with(implied) ? key.substr(implied.size()) : key;
-  return replaced(replaced(text, "_", " "), ".", " ");
+  const auto plain = [](const std::string& text) { return replaced(replaced(text, "_", " "), ".", " "); };
+  const std::size_t open = key.find('['), shut = key.rfind(']');
+  if (open != std::string::npos && shut != std::string::npos && shut > open + 1 && shut + 1 < key.size()) {
+    std::string name = key.substr(open + 1, shut - open - 1);
+    if (name.size() > 2 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
+    if (name.find_first_not_of("0123456789") != std::string::npos) return name + plain(key.substr(shut + 1));
+  }
+  for (const std::string_view implied : {"structure.", "variables."})
+    if (key.starts_with(implied)) return plain(key.substr(implied.size()));
+  return plain(key);
 }
 
 // Of the key with the override. What it calls by name or index the scene knows by another key: the one that

@@ -378,6 +378,11 @@ TEST_CASE("axes of figures are called by words and units") {
         "gravity acceleration[2] (m/s\u00B2)");
   CHECK(titles("four_bar", {"structure.nodes.A.mass=1"}, "structure.nodes.B.mass=1:2:3").first ==
         "nodes B mass (kg)");
+  const auto called = [](const char* axis) { return parse_axis(axis).title(); };
+  CHECK(called("forces[drag_1].damping=1:2:3") == "drag_1 damping");  // by its own name
+  CHECK(called("forces[\"a.b\"].free_length=1:2:3") == "a.b free length");
+  CHECK(called("forces[0].damping=1:2:3") == "forces[0] damping");
+  CHECK(called("variables.crank_mass=1:2:3") == "crank mass");
 }
 
 TEST_CASE("a value that no scene takes is a row of its own wherever it stands in the list") {
