@@ -70,7 +70,9 @@ std::string events_sentence(const Simulation& run) {
   const double span = run.trajectory.end_time() - run.trajectory.start_time();
   const int decimals =
       span > 0 ? static_cast<int>(std::clamp(std::ceil(6 - std::log10(span)), 6.0, 300.0)) : 6;
-  const auto seconds = [&](double t) { return plot::format_fixed(t, t == 0 ? 0 : decimals) + " s"; };
+  const auto seconds = [&](double t) {  // what rounds to 0 is the start
+    return plot::format_fixed(t, std::abs(t) < 0.5 * std::pow(10.0, -decimals) ? 0 : decimals) + " s";
+  };
   std::vector<std::pair<double, std::string>> told;
   const std::vector<EventGroup> groups = event_groups(run);
   for (std::size_t k = 0; k < std::min(groups.size(), most_named); ++k) {
