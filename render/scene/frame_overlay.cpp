@@ -379,6 +379,7 @@ void FrameOverlay::add_legend(double t, Boxes& taken, DrawList& list) const {
              0.95f * small_});
     rows = legend_rows(std::move(some), y, taken);
   }
+  if (!rows.empty() && rows.back().y < highest) return;  // where the structure is
   const float sign_width = 0.95f * small_, room = 0.25f * small_;
   for (const LegendRow& row : rows) {
     float right = width_ - edge_;

@@ -137,4 +137,28 @@ end_time = 0.05
   CHECK(std::ranges::any_of(others.labels, [](const TextLabel& l) { return l.text == "cable"; }));
 }
 
+// A bar of colours above the time fills the lower half of a thumbnail.
+TEST_CASE("a legend that would stand in the structure's place is left out") {
+  const Scene scene = read_scene_text(R"(structure.kind = 'custom'
+structure.nodes = [{name="A",position=[0,0,0],fixed=true},{name="B",position=[1,0,0]},{name="C",position=[0,0,1],fixed=true}]
+structure.rods = [{nodes=["A","B"],mass=1}]
+forces = [{kind="cable",nodes=["C","B"],axial_stiffness=1e4,length=3}]
+gravity.acceleration = [0, 0, -9.81]
+deployment.measure = "1 coordinate B along 0 0 1"
+deployment.deployed = -1
+render.colour_by = 'axial_force'
+solver.end_time = 0.1
+)",
+                                      "slack.toml");
+  const Simulation run = simulate(build_model(scene), scene.solver);
+  const Diagnostics diagnostics = diagnose(run);
+  FrameStyle style = film_style(scene, run, diagnostics);
+  for (const auto& [width, height] : {std::pair{640, 360}, {200, 150}}) {
+    style.width = width, style.height = height;
+    const DrawList list = FrameBuilder(run.trajectory, style).build(0.1);
+    CHECK((label(list, "cable, slack") != nullptr) == (width == 640));
+    CHECK(list.areas.size() > 60);  // the bar
+  }
+}
+
 }  // namespace line_colors_test
