@@ -126,6 +126,13 @@ void PathMotion::cut(double t) {
   while (!steps_.empty() && steps_.back().t0 >= t) steps_.pop_back();
 }
 
+// The step before was cut, and goes on, turning round, where this one begins.
+void PathMotion::rest(double t) {
+  v_ = 0;
+  if (t > t_) steps_.push_back({.t0 = t_, .h = t - t_, .s0 = s_});
+  t_ = t;
+}
+
 void PathMotion::at(double t, double& s, double& v) const {
   if (drive_.there()) return on_drive(t, s, v);
   if (t >= t_ || steps_.empty()) {

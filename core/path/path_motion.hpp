@@ -67,9 +67,9 @@ class PathMotion {
 
   // On to `latest` or less. Throws PathRefused where no step can be solved.
   void advance(PathLaw& law, double latest);
-  void cut(double t);                      // what lies behind is forgotten
-  void set_speed(double v) { v_ = v; }     // an impulse, now
-  void rest(double t) { t_ = t, v_ = 0; }  // stood still until then
+  void cut(double t);                   // what lies behind is forgotten
+  void set_speed(double v) { v_ = v; }  // an impulse, now
+  void rest(double t);                  // stood still until then
   void at(double t, double& s, double& v) const;
   // Times between two without which the quintic through their coordinates, rates and accelerations is not
   // this motion: what dampers stop at once.
@@ -80,7 +80,6 @@ class PathMotion {
   double v() const { return v_; }
   double step_start() const { return from_; }  // of the last step
   long iterations() const { return iterations_; }
-  long steps() const { return std::ssize(steps_); }
 
  private:
   void on_drive(double t, double& s, double& v) const;

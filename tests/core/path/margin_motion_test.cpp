@@ -112,6 +112,34 @@ min = 0
   CHECK(margin_in(slider(over_time("turns", 1, "[0, 1]", "[-1, 1]"))).end == MarginEnd::other_way);
 }
 
+// 1 N against 0.4 N of friction until t = 0.5: x = 0.075, v = 0.3; without it to x = 0.1875 at t = 1.25; 2 N
+// from t = 2 on. Places of jumps are known to rounding: 1e-9 of a margin.
+TEST_CASE("a pose that was passed before the motion stood still has the loads of when it was passed") {
+  const std::string push = over_time("push", 1, "[0, 0.5, 0.5, 2, 2, 9]", "[1, 1, 0, 0, 2, 2]");
+  for (const double end_time : {1.9, 60.0}) {
+    const Margin margin =
+        margin_in(slider(push + dry + "kinetic = 0.4\n", 1, "end_time = " + exact_number(end_time)));
+    CHECK(margin.arrives == (end_time > 2));
+    const double load_behind = margin.arrives ? 2 : 0;  // by the end of a motion that does not get there
+    int coasts = 0;
+    for (const MarginPoint& point : margin.points) {
+      CAPTURE(end_time, point.s, point.t);
+      if (std::abs(point.s - 0.075) < 1e-6 || std::abs(point.s - 0.1875) < 1e-6) continue;
+      const bool under_way = point.s > 0.075 && point.s < 0.1875;
+      coasts += under_way;
+      CHECK(point.margin == Approx((point.s < 0.075 ? 1
+                                    : under_way     ? 0
+                                                    : load_behind) /
+                                       0.4 -
+                                   1)
+                                .margin(1e-9));
+      if (under_way)  // x = 0.1875 - 0.2 (1.25 - t)^2
+        CHECK(point.t == Approx(1.25 - std::sqrt((0.1875 - point.s) / 0.2)).margin(1e-6));
+    }
+    CHECK(coasts > 40);
+  }
+}
+
 // Along -x as along x: loads that come late, friction, stops that bar the way or hold it at the start.
 TEST_CASE("a motion the other way along its coordinate is the mirror image") {
   const auto check_mirrored = [](const std::function<std::string(double)>& with, MarginEnd end) {
