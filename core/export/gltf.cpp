@@ -214,7 +214,7 @@ class GltfWriter {
       const Vec3 a = point(pose, a_node), b = point(pose, b_node), middle = 0.5 * (a + b);
       const double length = (b - a).norm();
       const Vec3 direction = length > 0 ? Vec3((b - a) / length) : axis;
-      turn = (Eigen::Quaterniond::FromTwoVectors(axis, direction) * turn).normalized();
+      turn = (shortest_turn(axis, direction) * turn).normalized();
       axis = direction;
       append(motion.translation, {middle[0], middle[1], middle[2]});
       append(motion.rotation, {turn.x(), turn.y(), turn.z(), turn.w()});
@@ -309,7 +309,7 @@ class GltfWriter {
     const double longest = motion_size() / 13, thick = longest / 25;
     const double length = longest * load.force.norm() / largest_force_,
                  head = std::min(6.5 * thick, 0.6 * length);
-    const auto turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), load.force);
+    const Eigen::Quaterniond turn = shortest_turn(Vec3::UnitY(), load.force);
     const std::string name = "load at " + structure_.node_copies[static_cast<std::size_t>(load.node)].name;
     glb_.json["nodes"][0]["children"].push_back(motion.node);
     glb_.json["nodes"].push_back({{"name", name},

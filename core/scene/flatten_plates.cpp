@@ -7,8 +7,6 @@
 //   r_k = sum_i w_ik h_i = 0,  dr_k / dx_i = w_ik N,  k = 1 ... n - 3.
 // A step is dx = -J^T (J J^T)^-1 r. Rows that others say already make J J^T singular: a little is added to
 // it.
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -44,14 +42,13 @@ PlateHeights heights_of(const ImportedShape& shape, const std::vector<int>& plat
   PlateHeights found;
   found.size = x.cwiseAbs().maxCoeff();
   x /= found.size;
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(x.transpose() * x);
-  found.normal = axes.eigenvectors().col(0);
+  const MatrixXd axes = symmetric_eigen(x.transpose() * x).vectors;
+  found.normal = axes.col(0);
   const VectorXd h = x * found.normal;
   Eigen::MatrixX3d plane(n, 3);
   plane.col(0).setOnes();
-  plane.rightCols<2>() = x * axes.eigenvectors().rightCols<2>();
-  const Eigen::HouseholderQR<Eigen::MatrixX3d> qr(plane);
-  found.w = (qr.householderQ() * MatrixXd::Identity(n, n)).rightCols(n - 3);
+  plane.rightCols<2>() = x * axes.rightCols<2>();
+  found.w = column_complement(plane, 0.0).rightCols(n - 3);
   found.r = found.size * (found.w.transpose() * h);
   found.off =
       found.size * h.lpNorm<Eigen::Infinity>() / (flat_already * found.size + coordinate_round_off * far);

@@ -7,10 +7,10 @@
 
 namespace unfurl {
 
+// Of two directions the one to the other, without a spin; compiled once: Eigen decomposes a matrix for it.
+Eigen::Quaterniond shortest_turn(const Vec3& from, const Vec3& to);
+
 // The rotation after which gravity points along -z, as all that is shown has it; none without gravity.
-inline Mat3 upright_rotation(const Vec3& gravity) {
-  if (gravity.isZero()) return Mat3::Identity();
-  return Eigen::Quaterniond::FromTwoVectors(-gravity, Vec3::UnitZ()).toRotationMatrix();
-}
+Mat3 upright_rotation(const Vec3& gravity);
 
 }  // namespace unfurl
