@@ -224,7 +224,8 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
                  "not stop: solver.stages = 4"
                : "")
        << "; to let them die out, structure.damping_ratio or solver.method = \"generalized_alpha\"; to leave "
-          "them out, structure.rod_model = \"quasi-static\"";
+          "them out, structure.rod_model = \"quasi-static\""
+       << (model.structure.kind == "custom" ? ", with elastic = true of no rod" : "");
   if (!springs.empty()) text << "; " << springs;
   return text.str();
 }

@@ -44,7 +44,6 @@ class Stretch {
   // The same, by multipliers from which what the step left of the constraints is taken; and what round-off in
   // them may change of it [m]: the displacement divides that by the weakest direction once more.
   bool closely(const State& state, VectorXd& u, double& doubt) {
-    if (compliance_.size() == 0) return false;
     VectorXd acceleration, lambda, of_forces;
     system_.follow(state);
     if (!index1_.evaluate_closely(state, acceleration, lambda, of_forces) || !by(state, lambda, u))

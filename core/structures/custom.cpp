@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/structures/custom.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/structure/structure_error.hpp"
@@ -84,7 +85,6 @@ Structure build_custom(const CustomSpec& spec) {
   Structure structure;
   structure.kind = "custom";
   structure.lumped_mass = spec.lumped_mass;
-  structure.quasi_static = spec.material.rod_model == "quasi-static";
   add_nodes(spec, structure);
 
   NameIndex names;
@@ -101,6 +101,13 @@ Structure build_custom(const CustomSpec& spec) {
         {rod_name(entry), a, b, rod_mass(entry, material), length, group_name(entry), 0.0, 1.0});
     if (entry.area > 0.0) give_section(spec, entry, structure.rods.back());
     segments.push_back(segments_of(spec.material, entry, structure.rods.back()));
+  }
+  if (spec.material.rod_model == "quasi-static") {
+    structure.quasi_static =
+        std::ranges::any_of(structure.rods, [](const Rod& rod) { return rod.elastic() && !rod.gives; });
+    if (!structure.quasi_static)
+      structure.notes.push_back(
+          "rod_model = \"quasi-static\" does nothing: all rods with a youngs_modulus have elastic = true");
   }
   show_as_solved(structure);
   note_idle_material(structure, spec.material);
