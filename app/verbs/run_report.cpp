@@ -42,8 +42,11 @@ Table outcome_of(const Simulation& run, const Diagnostics& diagnostics) {
                       (solver.method == "dvm" ? ", " + std::to_string(solver.stages) + " stages" : "") +
                       ", step " + number(solver.step, " s") + (solver.adaptive ? " at most" : "") + ", " +
                       std::to_string(run.steps) + " steps");
-  row("largest constraint error", number(largest_magnitude(diagnostics.at("constraint_max_m").values), " m"));
-  row("largest energy balance", number(largest_magnitude(diagnostics.at("energy_balance_J").values), " J"));
+  const auto largest = [&](const char* column) {  // rounding mostly, of which three digits say all
+    return short_number(largest_magnitude(diagnostics.at(column).values));
+  };
+  row("largest constraint error", largest("constraint_max_m") + " m");
+  row("largest energy balance", largest("energy_balance_J") + " J");
   for (const Event& event : run.events) row("event", event.name + " at " + number(event.t, " s"));
   return table;
 }
