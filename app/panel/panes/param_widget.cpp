@@ -20,13 +20,32 @@ namespace {
 constexpr std::size_t most_numbers = 4;  // that a vector has a field for each of
 
 // Seven digits. ImGui takes them for the smallest number of a logarithmic slider too.
-std::string digits_of(const SliderRange& range) {
+int digit_count(const SliderRange& range) {
   const double smallest = range.logarithmic && range.low > 0 ? std::log10(range.low) : 0.0;
-  return "%." + std::to_string(std::clamp(static_cast<int>(std::ceil(-smallest)) + 1, 7, 15)) + "g";
+  return std::clamp(static_cast<int>(std::ceil(-smallest)) + 1, 7, 15);
 }
-std::string format_of(const ParamSpec& spec, const SliderRange& range) {
+std::string digits_of(const SliderRange& range) {
+  return "%." + std::to_string(digit_count(range)) + "g";
+}
+std::string behind_number(const ParamSpec& spec) {
   const std::string unit = unit_caption(spec.unit);
-  return digits_of(range) + (unit.empty() || unit == "°" ? "" : " ") + unit;
+  return (unit.empty() || unit == "°" ? "" : " ") + unit;
+}
+
+// A power of ten is written over the slider as people write it: "7e10 Pa" for the "7e+10 Pa" of its format.
+bool slide(double& x, const SliderRange& range, const ParamSpec& spec, ImGuiSliderFlags flags) {
+  const std::string unit = behind_number(spec);
+  const double size = std::abs(x);
+  const bool power = size > 0 && (size < 1e-4 || size >= std::pow(10.0, digit_count(range)));
+  if (power) ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_BLACK_TRANS);
+  const bool moved = ImGui::SliderScalar("##value", ImGuiDataType_Double, &x, &range.low, &range.high,
+                                         (digits_of(range) + unit).c_str(), flags);
+  if (!power) return moved;
+  ImGui::PopStyleColor();
+  const std::string text = short_number(x, digit_count(range)) + unit;
+  ImGui::RenderTextClipped(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), text.c_str(), nullptr, nullptr,
+                           {0.5f, 0.5f});
+  return moved;
 }
 
 // Whether a slider is a text field now (a click with Ctrl, Enter), in which ImGui takes the first number for
@@ -60,15 +79,12 @@ bool real_widget(const ParamRow& row, ParamValue& value, Typing& typing) {
   }
   const ImGuiSliderFlags flags =
       ImGuiSliderFlags_NoRoundToFormat | (range.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-  const std::string format = format_of(row.spec, range);
   if (is_typed("##value")) {
     if (!typed_widget("##value", digits_of(range), x, typing)) return false;
     value = x;
     return true;
   }
-  if (!ImGui::SliderScalar("##value", ImGuiDataType_Double, &x, &range.low, &range.high, format.c_str(),
-                           flags))
-    return false;
+  if (!slide(x, range, row.spec, flags)) return false;
   if (!ImGui::GetIO().WantTextInput) {  // dragged: four digits are what a hand can mean
     char rounded[40];
     std::snprintf(rounded, sizeof rounded, "%.4g", x);

@@ -9,6 +9,7 @@
 #include "app/panel/panes/panes.hpp"
 #include "core/diagnostics/measures.hpp"
 #include "core/integrators/integrator.hpp"
+#include "core/study/table.hpp"
 #include "render/plot/ticks.hpp"
 
 namespace unfurl {
@@ -29,7 +30,7 @@ void number_row(Ui& ui, PanelState& state, const char* label, const char* key, d
                 const std::string& help) {
   label_row(ui, label);
   char text[256];
-  std::snprintf(text, sizeof text, "%.6g", value);
+  std::snprintf(text, sizeof text, "%s", short_number(value, 6).c_str());
   const std::string field = std::string("##") + key;
   const ImGuiID id = ImGui::GetID(field.c_str());
   const bool active = ImGui::GetActiveID() == id;  // in the frame in which Esc ends that, too
