@@ -98,6 +98,12 @@ std::vector<Figure> atlas_figures(const StressPlan& plan, const Stress& stress, 
       if (v != Verdict::right)
         f.caption += (f.caption.empty() ? "" : "; ") + std::string(to_string(v)) + ": " + criterion(v);
     f.caption += ".";
+    const auto known = [&](double value) {
+      return std::ranges::any_of(
+          stress.cells, [&](const StressCell& c) { return c.extreme == extreme.name && c.value == value; });
+    };
+    if (stress.complete && !std::ranges::all_of(extreme.values, known))
+      f.caption += " White: values of which there is no reference.";
     figures.push_back(std::move(f));
   }
   return figures;

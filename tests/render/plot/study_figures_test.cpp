@@ -352,6 +352,11 @@ TEST_CASE("figures of stress runs are in order in every style", "[figures]") {
   const Stress stress = run_stress(plan, journal, {});
   for (const Figure& figure : atlas_figures(plan, stress, "Six-unit ring antenna")) judge(figure);
   CHECK(atlas_figures(plan, {}, "Six-unit ring antenna").empty());  // no reference: nothing to draw
+  Stress less = stress;
+  CHECK_THAT(atlas_figures(plan, less, "Ring").front().caption, !Catch::Contains("no reference"));
+  std::erase_if(less.cells, [](const StressCell& cell) { return cell.value == 1e3; });
+  CHECK_THAT(atlas_figures(plan, less, "Ring").front().caption,
+             Catch::EndsWith(" White: values of which there is no reference."));
   judge(long_run_figure(long_stress(), "Ladder of four-bar windows"));
 }
 
