@@ -428,8 +428,7 @@ void FrameBuilder::add_loads(const VectorXd& whole, DrawList& list) const {
     const Vec3 arrow = upright_ * load.force * (looks_.arrow_length / looks_.largest_force);
     Vec3 tail = node(whole, load.node);
     // From the surface of a body that would hide half of it, a canister or a large joint.
-    if (const double body = looks_.joint_radius[static_cast<std::size_t>(load.node)];
-        arrow.norm() < 2 * body)
+    if (const double body = looks_.joint_radius[static_cast<std::size_t>(load.node)]; arrow.norm() < 2 * body)
       tail += body * arrow.normalized();
     const Vec3 head = tail + arrow;
     list.arrows.push_back(
