@@ -111,7 +111,8 @@ std::string name_of_run(const std::vector<WrittenFiles::Verdict>& listed) {
   return "scene";
 }
 
-// Tables and arrays carry no receipt themselves: a figure beside them does or, of a run, scene.toml says all.
+// Tables, arrays and words carry no receipt themselves: a figure beside them does or, of a run, scene.toml
+// says all.
 Receipt receipt_beside(const fs::path& file) {
   const std::string extension = file.extension().string();
   if (takes_note(extension) || extension == ".mp4")
@@ -131,7 +132,9 @@ Receipt receipt_beside(const fs::path& file) {
     throw FileError(file, none + "is not in the list of what unfurl wrote there (.unfurl)");
   Receipt receipt;
   const bool table = extension == ".csv" && name.find('/') == std::string::npos;
-  if (const auto figure = extension == ".csv" ? receipt_of_figure(*folder, *own, listed) : std::nullopt) {
+  const bool words = extension == ".txt" || name == "margin.json";
+  if (const auto figure =
+          extension == ".csv" || words ? receipt_of_figure(*folder, *own, listed) : std::nullopt) {
     receipt = *figure;
   } else if (own->owner == "run" && (table || format_of(name))) {
     receipt.name = name_of_run(listed);

@@ -134,8 +134,9 @@ TEST_CASE("a table carries no receipt, and is made again from what lies beside i
   REQUIRE(run_program(
               {"margin", "hoop6", "-o", dir / "margin", "--factor", "loads=0.9", "--dpi", "60", "--quiet"})
               .code == 0);
-  for (const char* table : {"run/series.csv", "run/trajectory.csv", "film/series.csv", "sweep/sweep.csv",
-                            "margin/margin.csv", "margin/loads.csv"}) {
+  for (const char* table :
+       {"run/series.csv", "run/trajectory.csv", "film/series.csv", "sweep/sweep.csv", "margin/margin.csv",
+        "margin/loads.csv", "margin/margin.json", "sweep/figures/sweep_energy.caption.txt"}) {
     INFO(table);
     const ProgramResult again = run_program({"reproduce", dir / table});
     INFO(again.err);
