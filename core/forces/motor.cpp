@@ -334,10 +334,12 @@ void fill_motor(const ParamSet& values, Force& force) {
                                       : Motor::Control::none;
   m.proportional = values.real("proportional");
   m.integral = values.real("integral");
-  m.derivative = values.real("derivative");
+  const bool by_rate = m.control == Motor::Control::rate;
+  m.derivative = by_rate ? 0.0 : values.real("derivative");
   if (m.control != Motor::Control::none && m.proportional + m.integral + m.derivative == 0.0)
-    throw StructureError("proportional",
-                         "is missing, and so are integral and derivative: it would do nothing");
+    throw StructureError("proportional", by_rate ? "is missing, and so is integral: it would do nothing"
+                                                 : "is missing, and so are integral and derivative: it would "
+                                                   "do nothing");
   const double unit = is_angle(force.measure) ? radians_per_degree : 1.0;
   if (m.control == Motor::Control::none)
     m.command.offset = values.real("voltage");

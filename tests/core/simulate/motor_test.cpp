@@ -457,6 +457,10 @@ TEST_CASE("motors that cannot be say what is wrong") {
   CHECK(error_of(crank, {"forces[0].current_limit=2"}).find("torque_constant: is missing") !=
         std::string::npos);
   CHECK(error_of(crank, {"forces[0].control=position"}).find("it would do nothing") != std::string::npos);
+  CHECK(error_of(crank, {"forces[0].control=position", "forces[0].derivative=1"}) == "");
+  // A rate has no derivative to follow.
+  CHECK(error_of(crank, {"forces[0].control=rate", "forces[0].derivative=1"})
+            .find("so is integral: it would do nothing") != std::string::npos);
 }
 
 }  // namespace motor_test
