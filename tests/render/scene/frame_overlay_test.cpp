@@ -59,6 +59,18 @@ const TextLabel* label(const DrawList& list, const std::string& end) {
   return found == list.labels.end() ? nullptr : &*found;
 }
 
+// Two balls 1 m from where they are deployed, for 2 s at a rate towards it [m/s].
+DrawList flying_by(const std::string& rate) {
+  return picture("structure.kind = 'custom'\nstructure.nodes = [{name='P',position=[0,0,0],velocity=[" +
+                     rate + ",0,0]},{name='Q',position=[0,1,0],velocity=[" + rate + R"(,0,0]}]
+structure.rods = [{nodes=["P","Q"],mass=1}]
+deployment.measure = "1 coordinate P along 1 0 0"
+deployment.deployed = 1
+solver.end_time = 2
+)",
+                 "");
+}
+
 }  // namespace
 
 TEST_CASE("a heading of many lines or in a small picture stands above the structure") {
@@ -130,28 +142,12 @@ solver.end_time = 2
 
 // Two balls that fly away from where they are deployed, 1 m ahead: after 2 s at 0.5 m/s by -100 %.
 TEST_CASE("what moves away from its deployed pose is deployed by less than nothing") {
-  const DrawList list = picture(R"(structure.kind = 'custom'
-structure.nodes = [{name="P",position=[0,0,0],velocity=[-0.5,0,0]},{name="Q",position=[0,1,0],velocity=[-0.5,0,0]}]
-structure.rods = [{nodes=["P","Q"],mass=1}]
-deployment.measure = "1 coordinate P along 1 0 0"
-deployment.deployed = 1
-solver.end_time = 2
-)",
-                                "");
-  CHECK(label(list, "deployed \u2212100 %"));
+  CHECK(label(flying_by("-0.5"), "deployed \u2212100 %"));
 }
 
 // 1 m from where it is deployed, at 0.4985 m/s for 2 s: 99.7 %, which `run` says as well.
 TEST_CASE("what is not quite deployed is not deployed by 100 per cent") {
-  const DrawList list = picture(R"(structure.kind = 'custom'
-structure.nodes = [{name="P",position=[0,0,0],velocity=[0.4985,0,0]},{name="Q",position=[0,1,0],velocity=[0.4985,0,0]}]
-structure.rods = [{nodes=["P","Q"],mass=1}]
-deployment.measure = "1 coordinate P along 1 0 0"
-deployment.deployed = 1
-solver.end_time = 2
-)",
-                                "");
-  CHECK(label(list, "deployed 99.7 %"));
+  CHECK(label(flying_by("0.4985"), "deployed 99.7 %"));
 }
 
 // A force of 0.2 MN pulls at a mass whose canister is larger than the arrow.

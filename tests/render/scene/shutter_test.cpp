@@ -30,19 +30,33 @@ std::array<double, 3> mean_color(const Image& image, int least, int most) {
   return sum;
 }
 
+// A rod of 2 m that turns about its end at 1.5 rad/s, in a line drawing.
+struct SpinningRod {
+  explicit SpinningRod(const std::string& section) : run(run_of(section)) {
+    style.width = 480, style.height = 320;
+    style.labels = false;
+    style.options.look = "print";
+  }
+  static Simulation run_of(const std::string& section) {
+    const Scene scene = read_scene_text(
+        "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'P'\nposition = [0, 0, 0]\nfixed = true\n"
+        "[[structure.nodes]]\nname = 'E'\nposition = [2, 0, 0]\nvelocity = [0, 0, 3]\n[[structure.rods]]\n"
+        "nodes = ['P', 'E']\nmass = 3\n" +
+            section + "[solver]\nstep = 0.01\nend_time = 1\n",
+        "spin.toml");
+    return simulate(build_model(scene), scene.solver);
+  }
+
+  Simulation run;
+  FrameStyle style;
+};
+
 }  // namespace
 
 TEST_CASE("what moves before nothing is blurred, and keeps its colour") {
-  const Scene scene = read_scene_text(
-      "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'P'\nposition = [0, 0, 0]\nfixed = true\n"
-      "[[structure.nodes]]\nname = 'E'\nposition = [2, 0, 0]\nvelocity = [0, 0, 3]\n[[structure.rods]]\n"
-      "nodes = ['P', 'E']\nmass = 3\n[solver]\nstep = 0.01\nend_time = 1\n",
-      "spin.toml");
-  const Simulation run = simulate(build_model(scene), scene.solver);
-  FrameStyle style;
-  style.width = 480, style.height = 320;
-  style.labels = false;
-  style.options.look = "print";
+  SpinningRod rod("");
+  const Simulation& run = rod.run;
+  FrameStyle& style = rod.style;
   style.options.material = "paint";
   const FrameBuilder builder(run.trajectory, style);
   const auto context = make_offscreen_context();
@@ -61,16 +75,9 @@ TEST_CASE("what moves before nothing is blurred, and keeps its colour") {
 
 // A rod that turns by 0.75 rad while the shutter is open: its end goes fifty times its thickness.
 TEST_CASE("what moves fast leaves one blur, not pictures beside each other") {
-  const Scene scene = read_scene_text(
-      "[structure]\nkind = 'custom'\n[[structure.nodes]]\nname = 'P'\nposition = [0, 0, 0]\nfixed = true\n"
-      "[[structure.nodes]]\nname = 'E'\nposition = [2, 0, 0]\nvelocity = [0, 0, 3]\n[[structure.rods]]\n"
-      "nodes = ['P', 'E']\nmass = 3\narea = 1e-4\n[solver]\nstep = 0.01\nend_time = 1\n",
-      "spin.toml");
-  const Simulation run = simulate(build_model(scene), scene.solver);
-  FrameStyle style;
-  style.width = 480, style.height = 320;
-  style.labels = false;
-  style.options.look = "print";
+  SpinningRod rod("area = 1e-4\n");
+  const Simulation& run = rod.run;
+  FrameStyle& style = rod.style;
   style.options.camera = "front";
   const FrameBuilder builder(run.trajectory, style);
   const auto context = make_offscreen_context();
