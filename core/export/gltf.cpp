@@ -14,10 +14,10 @@
 #include "core/export/glb_file.hpp"
 #include "core/export/motion_keys.hpp"
 #include "core/export/unit_shapes.hpp"
+#include "core/export/upright.hpp"
 #include "core/math/drawing_origin.hpp"
 #include "core/structure/seams.hpp"
 #include "core/structure/shown_lines.hpp"
-#include "core/structure/upright.hpp"
 
 namespace unfurl {
 namespace {

@@ -3,9 +3,7 @@
 // its scene. Positions and forces are single precision, at times between which straight lines are the motion;
 // times and curves are double.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -17,13 +15,14 @@
 #include "core/export/atomic_file.hpp"
 #include "core/export/formats.hpp"
 #include "core/export/motion_keys.hpp"
+#include "core/export/upright.hpp"
 #include "core/math/drawing_origin.hpp"
 #include "core/math/largest.hpp"
 #include "core/math/magnitudes.hpp"
 #include "core/structure/seams.hpp"
 #include "core/structure/shown_lines.hpp"
-#include "core/structure/upright.hpp"
 #include "core/text/base64.hpp"
+#include "core/text/typeset_number.hpp"
 #include "core/text/version.hpp"
 #include "core/text/xml_text.hpp"
 
@@ -42,28 +41,6 @@ constexpr std::size_t most_points = 1500, parts_of_curves = 300;  // of curves
 
 std::string packed(const auto& values) {
   return base64(std::as_bytes(std::span(values)));
-}
-
-// "6160", "\u22120.375", "1.87\u00D710\u207B\u00B9\u2074"
-std::string short_text(double x, int digits = 3) {
-  std::array<char, 400> text{};
-  const bool plain = std::abs(x) >= 1 && std::abs(x) < 1e5;
-  if (plain && std::abs(x) >= std::pow(10.0, digits))
-    std::snprintf(text.data(), text.size(), "%.0f", x);
-  else
-    std::snprintf(text.data(), text.size(), "%.*g", digits, x);
-  std::string out = text.data();
-  const std::size_t e = out.find('e');
-  std::string power;
-  if (e != std::string::npos) {
-    constexpr std::array raised{"\u2070", "\u00B9", "\u00B2", "\u00B3", "\u2074",
-                                "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
-    power = "\u00D710";
-    for (const char c : std::to_string(std::stoi(out.substr(e + 1))))
-      power += c == '-' ? "\u207B" : raised[static_cast<std::size_t>(c - '0')];
-    out.resize(e);
-  }
-  return (out.starts_with("-") ? "\u2212" + out.substr(1) : out) + power;
 }
 
 // Within what a browser bears.
@@ -122,7 +99,7 @@ void add_motion(const ExportJob& job, Page& page) {
   if (off > bearable)
     warnings.push_back("viewer.html has " + std::to_string(keys.times.size()) +
                        " poses, too few for the rod forces: between two of them it shows some up to " +
-                       short_text(off) + " N off, which rod_forces.csv has");
+                       format_number(off, 3) + " N off, which rod_forces.csv has");
   for (const std::string& warning : warnings) {
     if (warning.empty()) continue;
     page["warnings"].push_back(warning);
@@ -224,25 +201,27 @@ void add_words(const ExportJob& job, Page& page) {
     page["facts"].push_back({name, value});
   };
   page["title"] = job.title.empty() ? job.name : job.title;
-  page["subtitle"] = std::string(to_string(run.status)) + " at " + short_text(run.trajectory.end_time()) +
-                     " s" + (run.message.empty() ? "" : ": " + run.message);
+  page["subtitle"] = std::string(to_string(run.status)) + " at " +
+                     format_number(run.trajectory.end_time(), 3) + " s" +
+                     (run.message.empty() ? "" : ": " + run.message);
   facts("ended",
-        std::string(to_string(run.status)) + " at " + short_text(run.trajectory.end_time(), 9) + " s");
+        std::string(to_string(run.status)) + " at " + format_number(run.trajectory.end_time(), 9) + " s");
   facts("structure", std::to_string(structure.node_copies.size()) + " nodes, " +
                          std::to_string(structure.rod_copies.size()) + " rods");
   facts("method", (solved_as(run).name == "path" ? "along its path" : solver.method) + ", " +
                       std::to_string(run.steps) + " steps");
   const auto largest = [&](const char* column) {
     const Series* series = job.diagnostics.find(column);
-    return series ? short_text(largest_magnitude(series->values)) : "not looked at";
+    return series ? format_number(largest_magnitude(series->values), 3) : "not looked at";
   };
   facts("constraint error", largest("constraint_max_m") + " m");
   facts("energy balance", "off by " + largest("energy_balance_J") + " J at most");
   const RememberedExtremes once;
   if (const PeakForce peak = peak_rod_force(run, job.diagnostics); peak.rod >= 0)
-    facts("peak rod force", short_text(std::copysign(
-                                find_measure("peak_rod_force").value(run, job.diagnostics), peak.force_N)) +
-                                " N" + doubt_about(peak, job.diagnostics));
+    facts("peak rod force",
+          format_number(
+              std::copysign(find_measure("peak_rod_force").value(run, job.diagnostics), peak.force_N), 3) +
+              " N" + doubt_about(peak, job.diagnostics));
   if (!job.command.empty()) facts("command, of the scene below", std::string(job.command));
   facts("made by", "Unfurl " + version());
   page["events"] = page["warnings"] = Page::array();

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/text/typeset_number.hpp"
+
 namespace unfurl::plot {
 
 struct Ticks {
@@ -24,14 +26,10 @@ Ticks whole_ticks(double lo, double hi, int most);
 // or the multiples 2..9. 0 < lo < hi. A range inside one decade gets linear ticks.
 Ticks log_ticks(double lo, double hi, int most);
 
-std::string superscript(int n);   // "⁻¹⁵"
-std::string power_of_ten(int n);  // "10⁻¹⁵"
-// With so many significant digits, as people write it: "4.92", "0.013", "2.2×10⁻¹⁶"; trailing zeros are
-// dropped.
-std::string format_number(double value, int digits);
-// With so many decimals and a true minus sign; never "−0".
-std::string format_fixed(double value, int decimals);
-// A share of 1 in whole per cents, "85 %"; what falls short of the whole is never "100 %" but "99.7 %".
-std::string format_share(double share);
+using unfurl::format_fixed;
+using unfurl::format_number;
+using unfurl::format_share;
+using unfurl::power_of_ten;
+using unfurl::superscript;
 
 }  // namespace unfurl::plot

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/export/upright.hpp"
 #include "core/math/drawing_origin.hpp"
-#include "core/structure/upright.hpp"
 #include "render/plot/text_metrics.hpp"
 #include "render/scene/frame_overlay.hpp"
 

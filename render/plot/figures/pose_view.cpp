@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/structure/upright.hpp"
+#include "core/export/upright.hpp"
 
 namespace unfurl {
 

@@ -55,12 +55,10 @@ struct SpinningRod {
 
 TEST_CASE("what moves before nothing is blurred, and keeps its colour") {
   SpinningRod rod("");
-  const Simulation& run = rod.run;
-  FrameStyle& style = rod.style;
-  style.options.material = "paint";
-  const FrameBuilder builder(run.trajectory, style);
+  rod.style.options.material = "paint";
+  const FrameBuilder builder(rod.run.trajectory, rod.style);
   const auto context = make_offscreen_context();
-  Renderer renderer(*context, style.width, style.height);
+  Renderer renderer(*context, rod.style.width, rod.style.height);
   Shot shot{0.4, 0.4, 0};
   const auto sharp = mean_color(exposed(renderer, builder, shot, 0), 250, 255);
   shot.open = 0.15;
@@ -76,12 +74,10 @@ TEST_CASE("what moves before nothing is blurred, and keeps its colour") {
 // A rod that turns by 0.75 rad while the shutter is open: its end goes fifty times its thickness.
 TEST_CASE("what moves fast leaves one blur, not pictures beside each other") {
   SpinningRod rod("area = 1e-4\n");
-  const Simulation& run = rod.run;
-  FrameStyle& style = rod.style;
-  style.options.camera = "front";
-  const FrameBuilder builder(run.trajectory, style);
+  rod.style.options.camera = "front";
+  const FrameBuilder builder(rod.run.trajectory, rod.style);
   const auto context = make_offscreen_context();
-  Renderer renderer(*context, style.width, style.height);
+  Renderer renderer(*context, rod.style.width, rod.style.height);
   Shot shot{0, 0, 0};
   shot.open = 0.5;
   const Image image = exposed(renderer, builder, shot, 0);
@@ -89,11 +85,11 @@ TEST_CASE("what moves fast leaves one blur, not pictures beside each other") {
   constexpr int places = 400;
   for (int k = 0; k < places; ++k) {  // nine tenths out, where the rod was at that time
     const double t = shot.open * (0.1 + 0.8 * k / places);
-    const VectorXd at = run.trajectory.positions_at(t);
+    const VectorXd at = rod.run.trajectory.positions_at(t);
     const Vec3f p = (builder.upright() * (0.9 * at.tail<3>() - builder.origin())).cast<float>();
-    const Vec3f pixel = project(builder.build(shot).camera, style.width, style.height, p);
+    const Vec3f pixel = project(builder.build(shot).camera, rod.style.width, rod.style.height, p);
     const auto x = static_cast<std::size_t>(pixel.x()), y = static_cast<std::size_t>(pixel.y());
-    covered += image.rgba[4 * (y * static_cast<std::size_t>(style.width) + x) + 3] > 0;
+    covered += image.rgba[4 * (y * static_cast<std::size_t>(rod.style.width) + x) + 3] > 0;
   }
   CHECK(covered == places);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/structure/upright.hpp"
+#include "core/export/upright.hpp"
 
 namespace unfurl {
 
