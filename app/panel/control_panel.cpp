@@ -207,6 +207,7 @@ void ControlPanel::draw_panes() {
   }
   view_place_ = {left, top, width - right, bottom};
   timed(times_.scene, [&] {
+    now.view_place.heading = heading_room(ui, now, width - right - left, bottom - top);
     view_.prepare(static_cast<int>(view_place_.width()), static_cast<int>(view_place_.height()), now);
   });
   {

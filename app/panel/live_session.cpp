@@ -431,9 +431,8 @@ void LiveSession::use_view(bool only) {
     state_.message = "the film has this view already: turn it first";
     return;
   }
-  const double t = state_.playback.t;
-  const OrbitCamera view = state_.orbit ? *state_.orbit : film_view(*state_.shown, state_.picture, t);
-  state_.history.replace(with_camera(state_.history.now(), *state_.shown, state_.picture, view, t, only));
+  const OrbitCamera view = state_.orbit ? *state_.orbit : film_view(state_);
+  state_.history.replace(with_camera(state_, view, only));
   state_.orbit.reset();
   state_.message = only ? "this is the film's view" : "a camera key at the present time";
 }

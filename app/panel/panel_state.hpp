@@ -20,6 +20,7 @@
 #include "app/panel/view/orbit_camera.hpp"
 #include "app/panel/view/picking.hpp"
 #include "app/panel/view/playback.hpp"
+#include "render/scene/framing.hpp"
 
 namespace unfurl {
 
@@ -33,6 +34,15 @@ struct ViewOptions {
   bool ghost = true;    // the pinned run behind the present one
 
   bool operator==(const ViewOptions&) const = default;
+};
+
+// The place of the view in the window.
+struct ViewPlace {
+  int width = 1280, height = 720;  // [pixels]
+  float words = 1;                 // times the least size of what is written
+  CornerRoom heading = {};         // what says which run it is, over the view
+
+  bool operator==(const ViewPlace&) const = default;
 };
 
 // Work beside the window, as it stands.
@@ -78,6 +88,7 @@ struct PanelState {
   Playback playback;
   double frames_per_second = 0;  // while it plays, smoothed
   ViewOptions view;
+  ViewPlace view_place;
   std::optional<OrbitCamera> orbit;       // none: the camera that frames the motion
   std::optional<OrbitCamera> build_view;  // that Build began with, which frames the start
   Selection selected, hovered;

@@ -28,6 +28,7 @@ struct FrameStyle {
   bool loads = true;               // arrows
   float words = 1;                 // times the least size of what is written
   bool measures = true;            // scale bar and axes of the options; false: their room is empty
+  CornerRoom covered = {};         // top left, by something that lies over the picture
   RenderOptions options = {};      // look, colours, overlays, camera; its size is not used
   // What colours by a quantity, errors, method and inset are read from; without them those are left out.
   const Simulation* run = nullptr;

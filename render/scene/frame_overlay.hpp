@@ -21,13 +21,10 @@ class FrameOverlay {
 
   // whole: the positions of all nodes at the time t.
   void add(double t, const VectorXd& whole, DrawList& list) const;
-  // What is written in the corners, as shares of the picture from there: at the top on the left, and legend
-  // and colours at the bottom on the right; 0: nothing is.
-  struct Corner {
-    double wide = 0, high = 0;
-  };
+  // What is written in the corners: at the top on the left, and legend and colours at the bottom on the
+  // right; 0: nothing is.
   struct Words {
-    Corner heading, legend;
+    CornerRoom heading, legend;
     double status = 0;  // how high time and share of the deployment reach from the bottom
   };
   Words words(bool loads) const;

@@ -27,6 +27,13 @@ struct Margins {
   double left = 0.05, right = 0.05, top = 0.10, bottom = 0.10;
 };
 
+// A corner of a picture that something else needs, as shares of the picture's width and height.
+struct CornerRoom {
+  double wide = 0, high = 0;
+
+  bool operator==(const CornerRoom&) const = default;
+};
+
 // Where the camera stands, as seen from what it looks at [rad].
 struct ViewAngles {
   double azimuth = 0;    // from +x towards +y

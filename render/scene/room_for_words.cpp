@@ -13,7 +13,7 @@ FrameOverlay::Words FrameOverlay::words(bool loads) const {
   DrawList list;
   list.arrows.resize(loads ? 1 : 0);  // for the legend
   Words out;
-  const auto take = [](Corner& corner, float wide, float high) {
+  const auto take = [](CornerRoom& corner, float wide, float high) {
     corner = {std::max(corner.wide, static_cast<double>(wide)),
               std::max(corner.high, static_cast<double>(high))};
   };
@@ -32,7 +32,7 @@ namespace {
 
 // Is one of the points, with its room, in that corner of a camera's picture?
 bool reaches_into(const PointSource& points, const Camera& camera, const Framing& framing, bool top_left,
-                  const FrameOverlay::Corner& corner) {
+                  const CornerRoom& corner) {
   const Eigen::Matrix4f to_clip = view_projection(camera, static_cast<float>(framing.aspect));
   const Vec3f forward = (camera.target - camera.eye).normalized(),
               right = forward.cross(camera.up).normalized(), up = right.cross(forward);
@@ -63,15 +63,17 @@ void FrameBuilder::make_room(const PointSource& points, const ViewAngles& view, 
   const bool loads = style_.loads && style_.options.loads && !trajectory_.structure().load_copies.empty();
   const FrameOverlay::Words words = overlay_->words(loads);
   margins.bottom = std::clamp(std::max(overlay_->footing_top(), words.status), margins.bottom, 0.5);
-  const auto in_the_way = [&](bool top_left, const FrameOverlay::Corner& corner) {
+  const auto in_the_way = [&](bool top_left, const CornerRoom& corner) {
     const Camera camera = frame_points(points, bounds_.center, bounds_, view, framing);
     return style_.labels && reaches_into(points, camera, framing, top_left, corner);
   };
-  const FrameOverlay::Corner &heading = words.heading, &legend = words.legend;
+  const CornerRoom &heading = words.heading, &legend = words.legend;
   constexpr double beside = 0.16, most = 0.4;
   if (heading.high > margins.top)
     if (dimensions || style_.options.follow || heading.high > beside || in_the_way(true, heading))
       margins.top = std::max(margins.top, std::min(heading.high, most));
+  if (style_.covered.high > margins.top && in_the_way(true, style_.covered))
+    margins.top = std::min(style_.covered.high, most);
   if (legend.high > margins.bottom && in_the_way(false, legend)) margins.bottom = std::min(legend.high, most);
 }
 

@@ -12,8 +12,10 @@
 namespace unfurl {
 
 void draw_top_bar(Ui& ui, PanelState& state);
-void draw_scene_pane(Ui& ui, PanelState& state);                       // left
-void draw_view_pane(Ui& ui, PanelState& state, SceneView& view);       // centre
+void draw_scene_pane(Ui& ui, PanelState& state);                  // left
+void draw_view_pane(Ui& ui, PanelState& state, SceneView& view);  // centre
+// What the words on the left of a view of that size take of it [pixels].
+CornerRoom heading_room(const Ui& ui, const PanelState& state, float width, float height);
 void draw_figure_pane(Ui& ui, PanelState& state, FigureCards& cards);  // right
 void draw_study_pane(Ui& ui, PanelState& state, FigureCards& cards);   // right, other page
 void draw_right_tabs(Ui& ui, PanelState& state);                       // above either

@@ -267,36 +267,59 @@ void draw_pending(Ui& ui, const PanelState& state, const Frame& frame) {
   ui.places["progress"] = text_on_ground(ui, {frame.low.x + ui.px(14), high.y - ui.px(26)}, text, 0.85f);
 }
 
+// Which run it is: its title, what became of it, the first of its warnings, in the view's upper left corner.
+struct StateLine {
+  std::string title, text, warned;
+  ImVec2 at;           // of the title, from the view's corner [pixels]
+  float text_top = 0;  // of the text and of the warning
+  float warned_top = 0;
+  plot::Rect ground;  // below all of them
+};
+
+StateLine state_line(const Ui& ui, const LiveRun& run, std::string text, float width) {
+  const float pad = ui.px(7), room = width - ui.px(40);
+  StateLine line;
+  ImGui::PushFont(ui.bold);  // that of the title: it is wider than the other
+  line.title = shortened(run.scene.title, room);
+  ImGui::PopFont();
+  line.text = std::move(text);
+  line.warned = shortened(warning_sentence(run), room);
+  line.at = {ui.px(17), ui.px(52)};
+  const ImVec2 size = ImGui::CalcTextSize(line.text.c_str(), nullptr, false, room);
+  const float titled = ui.bold->CalcTextSizeA(ui.bold->FontSize, FLT_MAX, 0, line.title.c_str()).x;
+  const float wide = std::max({size.x, titled, ImGui::CalcTextSize(line.warned.c_str()).x});
+  line.text_top = line.at.y + ui.bold->FontSize + ui.px(4);
+  line.warned_top = line.text_top + size.y + ui.px(2);
+  const float end = line.warned.empty() ? line.text_top + size.y : line.warned_top + ui.regular->FontSize;
+  line.ground = {line.at.x - pad, line.at.y - pad, line.at.x + wide + pad, end + pad};
+  return line;
+}
+
 // On a ground of its own: the structure may be behind it.
 void draw_state_line(Ui& ui, const PanelState& state, const SceneView& view, const Frame& frame) {
   const LiveRun& run = *state.shown;
-  ImGui::PushFont(ui.bold);  // that of the title: it is wider than the other
-  const std::string title = shortened(run.scene.title, frame.size.x - ui.px(40));
-  ImGui::PopFont();
-  const bool failed = run.simulation.status == RunStatus::failed;
-  std::string line = state_sentence(run);
+  std::string text = state_sentence(run);
   if (state.playback.playing && state.frames_per_second > 0) {
     char rate[40];
     std::snprintf(rate, sizeof rate, ", %.0f frames/s", state.frames_per_second);
-    line.insert(std::min(line.find('\n'), line.size()), rate);
+    text.insert(std::min(text.find('\n'), text.size()), rate);
   }
-  if (const std::string note = view.scale_note(); !note.empty()) line += "\n" + note;
+  if (const std::string note = view.scale_note(); !note.empty()) text += "\n" + note;
+  const StateLine line = state_line(ui, run, text, frame.size.x);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float pad = ui.px(7), room = frame.size.x - ui.px(40);
-  const ImVec2 at(frame.low.x + ui.px(17), frame.low.y + ui.px(52));
-  const ImVec2 text = ImGui::CalcTextSize(line.c_str(), nullptr, false, room);
-  const std::string warned = shortened(warning_sentence(run), room);
-  const float titled = ui.bold->CalcTextSizeA(ui.bold->FontSize, FLT_MAX, 0, title.c_str()).x;
-  const float wide = std::max({text.x, titled, ImGui::CalcTextSize(warned.c_str()).x});
-  const float below = at.y + ui.bold->FontSize + ui.px(4) + text.y;
-  const float end = below + (warned.empty() ? 0 : ui.regular->FontSize + ui.px(2)) + pad;
-  list.AddRectFilled({at.x - pad, at.y - pad}, {at.x + wide + pad, end}, ui.color(ui.theme.window, 0.72f),
-                     ui.px(5));
-  list.AddText(ui.bold, ui.bold->FontSize, at, ui.color(ui.theme.text), title.c_str());
-  list.AddText(ui.regular, ui.regular->FontSize, {at.x, at.y + ui.bold->FontSize + ui.px(4)},
-               ui.color(failed ? ui.theme.error : ui.theme.dim), line.c_str(), nullptr, room);
-  list.AddText({at.x, below + ui.px(2)}, ui.color(ui.theme.warning), warned.c_str());
-  ui.places["state line"] = {at.x - pad, at.y - pad, at.x + wide + pad, end};
+  const auto place = [&](double x, double y) {
+    return ImVec2(frame.low.x + static_cast<float>(x), frame.low.y + static_cast<float>(y));
+  };
+  const ImVec2 low = place(line.ground.x0, line.ground.y0), high = place(line.ground.x1, line.ground.y1);
+  list.AddRectFilled(low, high, ui.color(ui.theme.window, 0.72f), ui.px(5));
+  list.AddText(ui.bold, ui.bold->FontSize, place(line.at.x, line.at.y), ui.color(ui.theme.text),
+               line.title.c_str());
+  const bool failed = run.simulation.status == RunStatus::failed;
+  list.AddText(ui.regular, ui.regular->FontSize, place(line.at.x, line.text_top),
+               ui.color(failed ? ui.theme.error : ui.theme.dim), line.text.c_str(), nullptr,
+               frame.size.x - ui.px(40));
+  list.AddText(place(line.at.x, line.warned_top), ui.color(ui.theme.warning), line.warned.c_str());
+  ui.places["state line"] = {low.x, low.y, high.x, high.y};
 }
 
 void choose_preset(PanelState& state, const SceneView& view, ViewPreset preset) {
@@ -415,6 +438,14 @@ void draw_view_buttons(Ui& ui, PanelState& state, const SceneView& view, const F
 }
 
 }  // namespace
+
+// With a line for what is not to scale, whether there is something or not: it depends on the camera.
+CornerRoom heading_room(const Ui& ui, const PanelState& state, float width, float height) {
+  if (!state.shown || width < 1 || height < 1) return {};
+  const plot::Rect ground = state_line(ui, *state.shown, state_sentence(*state.shown) + "\n ", width).ground;
+  const double gap = ui.px(6);
+  return {(ground.x1 + gap) / width, (ground.y1 + gap) / height};
+}
 
 void draw_view_pane(Ui& ui, PanelState& state, SceneView& view) {
   const Frame frame{ImGui::GetWindowPos(), ImGui::GetWindowSize()};

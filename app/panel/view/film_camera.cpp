@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/panel/view/view_style.hpp"
 #include "core/scene/write.hpp"
-#include "render/scene/film_style.hpp"
 
 namespace unfurl {
 
@@ -16,24 +16,14 @@ double reach(const OrbitCamera& orbit) {
   return orbit.distance * std::tan(0.5 * orbit.field_of_view);
 }
 
-// The camera alone: what is written needs names that the run may not have.
-FrameStyle bare_style(const LiveRun& run, const RenderOptions& picture) {
-  Scene scene = run.scene;
-  scene.render = picture;
-  scene.render.inset = scene.render.trails = "";
-  FrameStyle style = film_style(scene, run.simulation, run.diagnostics);
-  style.labels = false;
-  return style;
-}
-
-// Half of the height that a film with these keys at a zoom of 1 sees at its target [m].
-double film_reach(const LiveRun& run, const RenderOptions& picture, std::vector<CameraKey> keys) {
-  RenderOptions still = picture;
+// Half of the height that the view of a film with these keys, at a zoom of 1, sees at its target [m].
+double film_reach(const PanelState& state, std::vector<CameraKey> keys) {
+  RenderOptions still = state.picture;
   still.follow = false;
   still.orbit = still.turntable = 0;
   for (CameraKey& key : keys) key.zoom = 1;
   still.camera_keys = std::move(keys);
-  const Camera camera = FrameBuilder(run.simulation.trajectory, bare_style(run, still)).camera();
+  const Camera camera = FrameBuilder(state.shown->simulation.trajectory, view_style(state, still)).camera();
   return camera.parallel_height > 0 ? 0.5 * static_cast<double>(camera.parallel_height)
                                     : reach(orbit_of(camera));
 }
@@ -63,8 +53,10 @@ std::string key_text(const CameraKey& key) {
 
 }  // namespace
 
-OrbitCamera film_view(const LiveRun& run, const RenderOptions& picture, double t) {
-  const Camera camera = FrameBuilder(run.simulation.trajectory, bare_style(run, picture)).build(t).camera;
+OrbitCamera film_view(const PanelState& state) {
+  const Camera camera = FrameBuilder(state.shown->simulation.trajectory, view_style(state, state.picture))
+                            .build(state.playback.t)
+                            .camera;
   OrbitCamera orbit = orbit_of(camera);
   if (camera.parallel_height > 0)
     orbit.distance = 0.5f * camera.parallel_height / std::tan(0.5f * orbit.field_of_view);
@@ -75,16 +67,19 @@ bool moves_camera(const RenderOptions& picture) {
   return picture.camera_keys.size() > 1 || picture.follow || picture.orbit != 0 || picture.turntable != 0;
 }
 
-std::vector<CameraKey> keys_with(std::vector<CameraKey> others, const LiveRun& run,
-                                 const RenderOptions& picture, const OrbitCamera& orbit, double t) {
-  const double before = others.empty() ? 0 : film_reach(run, picture, others);
-  std::erase_if(others, [&](const CameraKey& key) { return std::abs(key.time - t) < 0.01 * time_unit(run); });
+namespace {
+
+std::vector<CameraKey> keys_with(std::vector<CameraKey> others, const PanelState& state,
+                                 const OrbitCamera& orbit, double t) {
+  const double before = others.empty() ? 0 : film_reach(state, others);
+  const double at_once = 0.01 * time_unit(*state.shown);
+  std::erase_if(others, [&](const CameraKey& key) { return std::abs(key.time - t) < at_once; });
   CameraKey key{t, in_degrees(orbit.azimuth), std::clamp(in_degrees(orbit.elevation), -90.0, 90.0), 1};
   std::vector<CameraKey> keys = others;
   keys.insert(std::upper_bound(keys.begin(), keys.end(), t,
                                [](double at, const CameraKey& other) { return at < other.time; }),
               key);
-  const double after = film_reach(run, picture, keys);
+  const double after = film_reach(state, keys);
   for (CameraKey& each : keys) {
     const double zoom = each.time == t ? after / reach(orbit) : each.zoom * after / before;
     each.zoom = std::clamp(std::round(1000 * zoom) / 1000, 0.05, 50.0);
@@ -92,12 +87,15 @@ std::vector<CameraKey> keys_with(std::vector<CameraKey> others, const LiveRun& r
   return keys;
 }
 
-SceneDocument with_camera(SceneDocument document, const LiveRun& run, const RenderOptions& picture,
-                          const OrbitCamera& orbit, double t, bool only) {
-  const double at = only ? 0.0 : rounded_time(t, run);
+}  // namespace
+
+SceneDocument with_camera(const PanelState& state, const OrbitCamera& orbit, bool only) {
+  const RenderOptions& picture = state.picture;
+  SceneDocument document = state.history.now();
+  const double at = only ? 0.0 : rounded_time(state.playback.t, *state.shown);
   std::string list;
   for (const CameraKey& key :
-       keys_with(only ? std::vector<CameraKey>() : picture.camera_keys, run, picture, orbit, at))
+       keys_with(only ? std::vector<CameraKey>() : picture.camera_keys, state, orbit, at))
     list += (list.empty() ? "" : ", ") + key_text(key);
   std::erase_if(document.added,
                 [](const std::string& text) { return text.starts_with("render.camera_keys="); });

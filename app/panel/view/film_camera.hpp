@@ -2,24 +2,19 @@
 // The camera that was led by hand, as keys of the film: [[render.camera_keys]].
 #pragma once
 
-#include "app/panel/runs/simulator.hpp"
-#include "app/panel/view/orbit_camera.hpp"
+#include "app/panel/panel_state.hpp"
 
 namespace unfurl {
 
-// Its direction and how near it is, for a film of the run that looks as `picture` says; what it looks at is
-// the film's own affair: the middle of the motion. `others`: keys beside it, whose zooms are taken along
-// where the film's distance changes by the new one.
-std::vector<CameraKey> keys_with(std::vector<CameraKey> others, const LiveRun& run,
-                                 const RenderOptions& picture, const OrbitCamera& orbit, double t);
-
-// Where the film's own camera is at a time, with its distance as keys mean it.
-OrbitCamera film_view(const LiveRun& run, const RenderOptions& picture, double t);
+// Where the film's own camera is at the present time, with its distance as keys mean it, in a picture of the
+// view's size.
+OrbitCamera film_view(const PanelState& state);
 bool moves_camera(const RenderOptions& picture);
 
-// The document with the key at the time t, beside those that there are or (`only`) in place of them; what
-// moves the camera otherwise is switched off.
-SceneDocument with_camera(SceneDocument document, const LiveRun& run, const RenderOptions& picture,
-                          const OrbitCamera& orbit, double t, bool only);
+// The document with a key at the present time, beside those that there are or (`only`) in place of them: the
+// camera's direction, and its zoom: how much nearer it is than one that sees the whole motion in the view.
+// What it looks at is the film's own affair: the middle of the motion. What moves the camera otherwise is
+// switched off; zooms of other keys are taken along where the film's distance changes by the new one.
+SceneDocument with_camera(const PanelState& state, const OrbitCamera& orbit, bool only);
 
 }  // namespace unfurl

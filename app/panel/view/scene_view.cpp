@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/scene/film_style.hpp"
+#include "app/panel/view/view_style.hpp"
 
 namespace unfurl {
 
@@ -66,12 +66,6 @@ Camera camera_by(const PanelState& state, const Camera& film, const DrawList& li
   return camera;
 }
 
-FrameStyle style_of(const LiveRun& run, const RenderOptions& picture) {
-  Scene scene = run.scene;
-  scene.render = picture;
-  return film_style(scene, run.simulation, run.diagnostics);
-}
-
 }  // namespace
 
 bool SceneView::Painted::operator==(const Painted& o) const {
@@ -84,23 +78,9 @@ void SceneView::rebuild(PanelState& state) {
   options_ = state.view;
   picture_ = state.picture;
   painted_ = {};
-  RenderOptions shown = picture_;
-  shown.transparent = false;
-  shown.supersample = 1;
-  if (!options_.labels) shown.title = shown.time = false;
-  FrameStyle style;
+  heading_ = state.view_place.heading;
   state.picture_problems.clear();
-  try {
-    style = style_of(*run_, shown);
-  } catch (const SceneError& error) {  // a name that this run does not know
-    state.picture_problems = error.problems();
-    shown.inset = shown.trails = "";
-    style = style_of(*run_, shown);
-  }
-  style.width = width_;
-  style.height = height_;
-  style.words = words_;
-  style.loads = style.loads && options_.loads;
+  FrameStyle style = view_style(state, picture_, &state.picture_problems);
   if (builder_) style.origin = builder_->origin();  // the eye stays where it is
   builder_ = std::make_unique<FrameBuilder>(run_->simulation.trajectory, style);
   ghost_.reset();
@@ -124,6 +104,7 @@ void SceneView::build(const PanelState& state) {
 void SceneView::prepare(int width, int height, PanelState& state) {
   if (width < 1 || height < 1) return;
   const bool resized = width != width_ || height != height_;
+  state.view_place = {width, height, words_, state.view_place.heading};
   dark_ = state.dark;
   if (resized || !renderer_) {
     renderer_.reset();  // its memory first
@@ -133,8 +114,8 @@ void SceneView::prepare(int width, int height, PanelState& state) {
   }
   if (!state.shown || state.shown->simulation.trajectory.empty()) return;
   const auto ghost = state.view.ghost ? state.pinned : nullptr;
-  const bool changed =
-      run_ != state.shown || ghost_run_ != ghost || !(options_ == state.view) || !(picture_ == state.picture);
+  const bool changed = run_ != state.shown || ghost_run_ != ghost || !(options_ == state.view) ||
+                       !(picture_ == state.picture) || !(heading_ == state.view_place.heading);
   if (resized || !builder_ || changed) {
     ghost_run_ = ghost;
     rebuild(state);

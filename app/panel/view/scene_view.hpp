@@ -57,6 +57,7 @@ class SceneView {
 
   GlContext& context_;
   float words_;
+  CornerRoom heading_;  // that the builder has left free
   std::unique_ptr<Renderer> renderer_;
   std::shared_ptr<const LiveRun> run_, ghost_run_;
   std::unique_ptr<FrameBuilder> builder_, ghost_;

@@ -321,11 +321,21 @@ TEST_CASE("the view that was turned by hand is the film's, and its command line 
   const CameraKey key = scene.render.camera_keys[0];
   CHECK(key.azimuth == Approx(led.azimuth / radians_per_degree).margin(0.051));
   CHECK(key.elevation == Approx(led.elevation / radians_per_degree).margin(0.051));
-  const LiveRun& run = *driver.state().shown;
-  const FrameBuilder film(run.simulation.trajectory, film_style(scene, run.simulation, run.diagnostics));
-  const OrbitCamera shown = orbit_of(film.camera());
+  const OrbitCamera shown = driver.panel().framed();
   CHECK(shown.distance * std::tan(shown.field_of_view / 2) ==
         Approx(led.distance * std::tan(led.field_of_view / 2)).epsilon(2e-3));
+  // As much nearer than what sees the whole motion is the film's, in a picture of its own size.
+  const LiveRun& run = *driver.state().shown;
+  const auto reach_of = [&](double zoom) {
+    Scene zoomed = scene;
+    zoomed.render.camera_keys[0].zoom = zoom;
+    return orbit_of(
+               FrameBuilder(run.simulation.trajectory, film_style(zoomed, run.simulation, run.diagnostics))
+                   .camera())
+        .distance;
+  };
+  CHECK(key.zoom > 1.2);
+  CHECK(reach_of(1) / reach_of(key.zoom) == Approx(key.zoom).epsilon(1e-3));
   CHECK(command_line(driver.state().history.now(), "render", "out").find("render.camera_keys=[{") !=
         std::string::npos);
   // A second key beside the first, at the present time.
