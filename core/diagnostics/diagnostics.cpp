@@ -407,12 +407,11 @@ class StateTable {
   VectorXd find_forces(std::size_t i, const VectorXd& q, const VectorXd& v) {
     const State& state = run_.trajectory.state(i);
     VectorXd lambda = forces_.multipliers(i, acceleration_);
-    const double most = most_doubt * lambda.lpNorm<Eigen::Infinity>();
-    const VectorXd& doubt = forces_.doubt();
+    VectorXd doubt = forces_.large_doubt(i, lambda);
     sharing_->share(state.t, q, run_.trajectory.report(i).singular_event, lambda);
-    if (doubt.size() > 0 && doubt.maxCoeff() > most) {
-      if (look_ == Look::states) lambda.setConstant(nan), acceleration_.setConstant(nan);
-      doubtful_[i] = (doubt.array() > most).select(doubt, 0.0);
+    if (doubt.size() > 0) {
+      if (look_ == Look::states) forces_.forget_beside(i, doubt, lambda, acceleration_);
+      doubtful_[i] = std::move(doubt);
     }
     axial_forces(*model_, state, q, v, lambda, force_);
     if (force_.size() > 0) out_.axial_force.row(static_cast<Index>(i)) = force_.transpose();

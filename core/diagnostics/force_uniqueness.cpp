@@ -7,9 +7,11 @@
 #include <limits>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "core/diagnostics/drives.hpp"
 #include "core/diagnostics/reactions.hpp"
+#include "core/integrators/independent_parts.hpp"
 #include "core/math/determined_rows.hpp"
 #include "core/math/factors.hpp"
 #include "core/math/largest.hpp"
@@ -174,19 +176,51 @@ std::vector<double>* values_of(Diagnostics& d, std::string_view name) {
   return nullptr;
 }
 
-// The largest of what acts on the nodes in these states: beside it, what rods give where all fall alike is
-// rounding.
-double acting_in(const Trajectory& trajectory, const DoubtfulStates& states) {
-  double most = 0;
+// Of each node coordinate the largest of what acts on it in these states: beside it, what rods give where all
+// fall alike is rounding.
+VectorXd acting_in(const Trajectory& trajectory, const DoubtfulStates& states) {
+  VectorXd most = VectorXd::Zero(trajectory.model().system.coordinates());
   for (const auto& [i, unused] : states) {
     const System system = trajectory.model(i).system.at(trajectory.state(i));
     VectorXd f = VectorXd::Zero(system.coordinates());
     system.add_applied_force(trajectory.time(i), trajectory.node_positions(i), trajectory.node_velocities(i),
                              1.0, f);
-    most = std::max(most, largest_magnitude(f.data(), f.size()));
+    most = most.cwiseMax(f.cwiseAbs());
   }
   return most;
 }
+
+// Doubt that counts, of each row of a model, by what of a run its constraints join with it: the largest
+// forces of rods, and what acts.
+class LeastDoubt {
+ public:
+  LeastDoubt(const Trajectory& trajectory, const DoubtfulStates& doubtful, const Diagnostics& d)
+      : forces_(VectorXd::Zero(d.axial_force.cols())) {
+    if (doubtful.empty()) return;
+    acting_ = acting_in(trajectory, doubtful);
+    for (Index i = 0; i < std::ssize(d.t); ++i)
+      for (Index r = 0; r < forces_.size(); ++r)
+        if (const double f = std::abs(d.axial_force(i, r)); f > forces_[r]) forces_[r] = f;
+  }
+  const VectorXd& of(const Model& model) {
+    if (std::exchange(model_, &model) == &model) return least_;
+    const System& system = model.system;
+    const IndependentParts parts(system);
+    VectorXd of_rows = VectorXd::Zero(system.constraints()), acts(system.solved_coordinates());
+    for (Index r = 0; r < forces_.size(); ++r)
+      if (const int row = system.rod_rows()[static_cast<std::size_t>(r)]; row >= 0) of_rows[row] = forces_[r];
+    system.reduce_sizes(acting_, acts);
+    const VectorXd of_parts =
+        (1e-9 * parts.largest_of_rows(of_rows)).cwiseMax(1e-12 * parts.largest(acts.data()));
+    least_.resize(of_rows.size());
+    for (Index r = 0; r < least_.size(); ++r) least_[r] = of_parts[parts.of_row(r)];
+    return least_;
+  }
+
+ private:
+  VectorXd forces_, acting_, least_;  // of rods, known ones; of node coordinates; of rows of the model
+  const Model* model_ = nullptr;
+};
 
 // open[i], 1: waves or round-off change forces of state i.
 void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
@@ -195,11 +229,7 @@ void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
   std::vector<double>* const smallest = values_of(d, "axial_force_min_unique");
   std::vector<char> unique(d.rod_unique.size(), 1);
   VectorXd force;
-  double largest_force = 0;  // of those that are known
-  for (Index i = 0; i < std::ssize(d.t); ++i)
-    for (const double f : d.axial_force.row(i))
-      largest_force = std::abs(f) > largest_force ? std::abs(f) : largest_force;
-  const double least = std::max(1e-9 * largest_force, 1e-12 * acting_in(trajectory, doubtful));
+  LeastDoubt least(trajectory, doubtful, d);
   for (std::size_t i = 0; i < d.t.size(); ++i) {
     const std::vector<char>& rows = uniqueness.at(i);
     const std::vector<int>& row_of = trajectory.model(i).system.rod_rows();
@@ -207,13 +237,15 @@ void mark_rods(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
     force = d.axial_force.row(static_cast<Index>(i));
     const std::vector<char> followed = followed_forces(trajectory.model(i), trajectory.state(i), force);
     const auto doubt = doubtful.find(i);
-    const bool doubted = doubt != doubtful.end() && doubt->second.maxCoeff() > least;
+    Eigen::ArrayX<bool> in_doubt;
+    if (doubt != doubtful.end()) in_doubt = doubt->second.array() > least.of(trajectory.model(i)).array();
+    const bool doubted = in_doubt.any();
     open[i] = followed.empty() && !doubted ? 0 : 1;
     for (std::size_t r = 0; r < unique.size(); ++r) {
       unique[r] = row_of[r] < 0 ? char{1} : rows[static_cast<std::size_t>(row_of[r])];
       if (regular) d.rod_unique[r] = static_cast<char>(d.rod_unique[r] & unique[r]);
       if (!followed.empty()) unique[r] = static_cast<char>(unique[r] & followed[r]);
-      if (doubted && row_of[r] >= 0 && doubt->second[row_of[r]] > least) unique[r] = 0;
+      if (doubted && row_of[r] >= 0 && in_doubt[row_of[r]]) unique[r] = 0;
       d.force_unique(static_cast<Index>(i), static_cast<Index>(r)) =
           unique[r] != 0 && !std::isnan(force[static_cast<Index>(r)]);
     }

@@ -85,7 +85,7 @@ using DoubtfulStates = std::map<std::size_t, VectorXd>;
 
 // Enters what is unique into diagnostics of the run's states that have everything else: flags of rods and
 // the columns that say so. Doubt below 1e-9 of the run's largest force is none: something at rest;
-// nor below 1e-12 of what acts on the nodes: something that falls freely.
+// nor below 1e-12 of what acts on the nodes: something that falls freely. Both of what constraints join.
 void mark_unique(const Trajectory& trajectory, const ForceUniqueness& uniqueness,
                  const DoubtfulStates& doubtful, Diagnostics& diagnostics);
 

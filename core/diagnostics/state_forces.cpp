@@ -24,7 +24,42 @@ constexpr double may_count = 300, counts_surely = 1e4;
 
 const SolvedPoint nothing_known{};
 
+bool within(const VectorXd& off, double share, const VectorXd& sizes) {
+  return (off.array().abs() <= share * sizes.array()).all();
+}
+
+// Rows or coordinates of a part.
+std::vector<Index> members(const IndependentParts& parts, Index part, Index count, bool rows) {
+  std::vector<Index> out;
+  for (Index k = 0; k < count; ++k)
+    if ((rows ? parts.of_row(k) : parts.of(k)) == part) out.push_back(k);
+  return out;
+}
+
 }  // namespace
+
+const IndependentParts& StateForces::parts(std::size_t i) {
+  if (std::exchange(parts_of_, &trajectory_.model(i)) != &trajectory_.model(i))
+    parts_.emplace(trajectory_.model(i).system);
+  return *parts_;
+}
+
+VectorXd StateForces::large_doubt(std::size_t i, const VectorXd& lambda) {
+  if (doubt_.size() == 0) return {};
+  const Eigen::ArrayXd most = most_doubt * parts(i).largest_beside(lambda).array();
+  const VectorXd large = (doubt_.array() > most).select(doubt_, 0.0);
+  return large.isZero(0) ? VectorXd() : large;
+}
+
+void StateForces::forget_beside(std::size_t i, const VectorXd& doubt, VectorXd& lambda,
+                                VectorXd& node_acceleration) {
+  const VectorXd doubted = parts(i).largest_of_rows(doubt);
+  const VectorXd unknown = (doubted.array() > 0).select(std::numeric_limits<double>::quiet_NaN(), doubted);
+  VectorXd moved(node_acceleration.size());
+  trajectory_.model(i).system.expand_rate(parts(i).spread(unknown), moved);
+  node_acceleration += moved;
+  for (Index r = 0; r < lambda.size(); ++r) lambda[r] += unknown[parts(i).of_row(r)];
+}
 
 const SolvedPoint& StateForces::at(std::size_t i) {
   if (ahead_ && i < ahead_->size()) return (*ahead_)[i];
@@ -66,8 +101,10 @@ VectorXd StateForces::multipliers(std::size_t i, VectorXd& node_acceleration) {
     seen_ = {i, here.lambda, {}};
     Close closer = look_closely(i, trajectory_.state(i));
     if (closer.doubt.size() > 0 && rough_here) {
-      if (closer.doubt.maxCoeff() > harmless * closer.point.lambda.lpNorm<Eigen::Infinity>())
-        interpolate(i, closer);
+      const VectorXd doubt = parts(i).largest_of_rows(closer.doubt),
+                     size = parts(i).largest_of_rows(closer.point.lambda);
+      for (Index part = 0; part < doubt.size(); ++part)
+        if (doubt[part] > harmless * size[part]) interpolate(i, part, closer);
       here = std::move(closer.point);
     }
     doubt_ = seen_.doubt = std::move(closer.doubt);
@@ -109,7 +146,7 @@ bool StateForces::smooth(std::size_t i) {
   const auto time = [&](std::size_t k) { return trajectory_.time(states[k]); };
   for (std::size_t k = 0; k < states.size(); ++k)
     off -= lagrange_weight(k, states.size(), trajectory_.time(i), time) * at(states[k]).lambda;
-  return off.lpNorm<Eigen::Infinity>() <= (inside ? rough : rough_at_end) * lambda.lpNorm<Eigen::Infinity>();
+  return within(off, inside ? rough : rough_at_end, parts(i).largest_beside(lambda));
 }
 
 // Forces are smooth whatever rounding says of them where the pose rests, or what is weak of it does.
@@ -129,7 +166,7 @@ bool StateForces::tells_nothing(std::size_t i, double weakness) {
 bool StateForces::stays(std::size_t i, const VectorXd& lambda) {
   const std::vector<std::size_t> before = beside(i, -1, 1);
   if (before.empty() || seen_.i != before.front() || !rests(i, before) ||
-      !((lambda - seen_.lambda).lpNorm<Eigen::Infinity>() <= rough * lambda.lpNorm<Eigen::Infinity>()))
+      !within(lambda - seen_.lambda, rough, parts(i).largest_beside(lambda)))
     return false;
   seen_.i = i;
   doubt_ = seen_.doubt;
@@ -151,7 +188,7 @@ StateForces::Close StateForces::look_closely(std::size_t model_of, const State& 
   system_->follow(state);
   out.point.known = one_->evaluate_closely(state, out.point.acceleration, out.point.lambda, out.doubt);
   if (!out.point.known || out.doubt.size() == 0 ||
-      out.doubt.maxCoeff() <= negligible * out.point.lambda.lpNorm<Eigen::Infinity>())
+      within(out.doubt, negligible, parts(model_of).largest_beside(out.point.lambda)))
     out.doubt.resize(0);
   return out;
 }
@@ -182,8 +219,8 @@ bool StateForces::rests(std::size_t i, const std::vector<std::size_t>& states) c
 // farther where that says more; its error is what the outer ones change. Not through a pole: there what is
 // odd about the pose falls away from it, where the forces are smooth it grows. The last state before an event
 // in a singular pose: through five poses before it and what the event says; where nothing follows it: through
-// six poses before it.
-void StateForces::interpolate(std::size_t i, Close& here) {
+// six poses before it. All that of one part of the structure: what is joined to nothing of it is known.
+void StateForces::interpolate(std::size_t i, Index part, Close& here) {
   // States on either side: short steps are many in the round-off, parts of a failed one before an end more.
   constexpr std::size_t far = reach, far_from_end = 64;
   const std::vector<std::size_t> behind = beside(i, +1, far);
@@ -198,11 +235,14 @@ void StateForces::interpolate(std::size_t i, Close& here) {
                    : std::min(t - trajectory_.time(first), trajectory_.time(last) - t);
   };
   const double most = both(before.back(), one_way ? 0 : behind.back());
-  const double own = here.doubt.maxCoeff();
+  const std::vector<Index> rows = members(parts(i), part, here.doubt.size(), true),
+                           columns = members(parts(i), part, here.point.acceleration.size(), false);
+  const auto largest = [&rows](const VectorXd& x) { return x(rows).lpNorm<Eigen::Infinity>(); };
+  const double own = largest(here.doubt);
   constexpr double told = 0.1;  // less, and the poses may be too far apart for what happens between them
   constexpr double many = 10;   // times as much: all of these poses have round-off
-  const auto tells_more = [own](const Close& pose) {
-    return pose.point.known && (pose.doubt.size() == 0 || 1000 * pose.doubt.maxCoeff() < own);
+  const auto tells_more = [&](const Close& pose) {
+    return pose.point.known && (pose.doubt.size() == 0 || 1000 * largest(pose.doubt) < own);
   };
   // The farther, the less of the round-off: the first of ever doubled distances that tells more.
   const double nearest = both(before.front(), one_way ? 0 : behind.front()) / 1024;
@@ -230,28 +270,26 @@ void StateForces::interpolate(std::size_t i, Close& here) {
       out += lagrange_weight(k, points, t, time) * (near[k].point.*what);
     return out;
   };
-  const auto odd = [&](std::size_t k) {
-    return (near[k].point.lambda - near[k + 1].point.lambda).lpNorm<Eigen::Infinity>();
-  };
+  const auto odd = [&](std::size_t k) { return largest(near[k].point.lambda - near[k + 1].point.lambda); };
   double least = told * own;
   for (int level = first; level < levels; ++level) {
     const double apart = std::ldexp(nearest, level);
     near.clear();
     if (!look(apart)) continue;
     if (!look(1.5 * apart) || !look(2 * apart) || (!one_way && odd(0) > 0.75 * odd(4) + 0.01 * own)) return;
-    VectorXd acceleration = through(near.size(), &SolvedPoint::acceleration);
+    const VectorXd acceleration = through(near.size(), &SolvedPoint::acceleration);
     if (ends) near.insert(near.begin(), limit), near.pop_back();
-    VectorXd lambda = through(near.size(), &SolvedPoint::lambda);
-    VectorXd doubt = many * (lambda - through(near.size() - 2, &SolvedPoint::lambda)).cwiseAbs();
-    if (!(doubt.maxCoeff() < least)) {
+    const VectorXd lambda = through(near.size(), &SolvedPoint::lambda);
+    const VectorXd doubt = many * (lambda - through(near.size() - 2, &SolvedPoint::lambda)).cwiseAbs();
+    if (!(largest(doubt) < least)) {
       if (!at_end || least < told * own) return;
       continue;
     }
-    least = doubt.maxCoeff();
-    here.point.acceleration = std::move(acceleration);
-    here.point.lambda = std::move(lambda);
-    here.doubt = std::move(doubt);
-    if (least <= negligible * here.point.lambda.lpNorm<Eigen::Infinity>()) return;
+    least = largest(doubt);
+    here.point.acceleration(columns) = acceleration(columns);
+    here.point.lambda(rows) = lambda(rows);
+    here.doubt(rows) = doubt(rows);
+    if (least <= negligible * largest(lambda)) return;
   }
 }
 
@@ -286,9 +324,7 @@ std::pair<std::size_t, std::size_t> undetermined_states(const Trajectory& trajec
     for (end = first; end < states && open(end);) ++end;
     if (end - first < fewest) continue;
     const VectorXd lambda = forces.multipliers((first + end) / 2, acceleration);
-    const VectorXd& doubt = forces.doubt();
-    if (doubt.size() > 0 && doubt.maxCoeff() > most_doubt * lambda.lpNorm<Eigen::Infinity>())
-      return {first, end - 1};
+    if (forces.large_doubt((first + end) / 2, lambda).size() > 0) return {first, end - 1};
   }
   return {0, 0};
 }

@@ -7,13 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "core/integrators/independent_parts.hpp"
 #include "core/integrators/index1.hpp"
 #include "core/simulate/trajectory.hpp"
 
 namespace unfurl {
 
 // Doubt of multipliers beyond which what a pose next to a singular one says of them is not called unique; of
-// the largest multiplier.
+// the largest multiplier of what constraints join them with.
 inline constexpr double most_doubt = 1e-4;
 
 // What the index-1 equations say at a state, in solved coordinates.
@@ -42,6 +43,10 @@ class StateForces {
   // By how much each of the multipliers that were asked for last may be off for that; empty: it is none of
   // those poses.
   const VectorXd& doubt() const { return doubt_; }
+  // Where it is more than most_doubt of these multipliers of state i, 0 elsewhere; empty: nowhere.
+  VectorXd large_doubt(std::size_t i, const VectorXd& lambda);
+  // NaN for what is joined so with rows that are in doubt.
+  void forget_beside(std::size_t i, const VectorXd& doubt, VectorXd& lambda, VectorXd& node_acceleration);
   // The same as the equations give it: not known at an event in a singular pose.
   const SolvedPoint& at(std::size_t i);
   // Whether the pose of state i is so near to a singular one that errors of it count many times in its
@@ -63,7 +68,8 @@ class StateForces {
   Close look_closely(std::size_t model_of, const State& state);
   Close limit_behind(std::size_t i) const;
   bool rests(std::size_t i, const std::vector<std::size_t>& states) const;
-  void interpolate(std::size_t i, Close& here);
+  void interpolate(std::size_t i, Index part, Close& here);
+  const IndependentParts& parts(std::size_t i);  // which say nothing of what is small in each other
 
   // States whose solutions are kept: those around the one that is asked for.
   static constexpr std::size_t kept = 16;
@@ -76,7 +82,9 @@ class StateForces {
   const Model* model_ = nullptr;
   std::optional<Index1Lanes> lanes_;  // of that model
   std::array<Kept, kept> kept_;       // state i at i % kept
-  std::unique_ptr<System> system_;    // of the model that was looked at closely last
+  std::optional<IndependentParts> parts_;
+  const Model* parts_of_ = nullptr;
+  std::unique_ptr<System> system_;  // of the model that was looked at closely last
   std::unique_ptr<Index1> one_;
   const Model* close_ = nullptr;  // that model
   VectorXd doubt_;

@@ -58,6 +58,13 @@ VectorXd IndependentParts::largest_of_rows(const VectorXd& x) const {
   return out;
 }
 
+VectorXd IndependentParts::largest_beside(const VectorXd& x) const {
+  const VectorXd of_parts = largest_of_rows(x);
+  VectorXd out(x.size());
+  for (Index r = 0; r < out.size(); ++r) out[r] = of_parts[of_row(r)];
+  return out;
+}
+
 VectorXd IndependentParts::spread(const VectorXd& of_parts) const {
   VectorXd out(sets_.size());
   for (Index i = 0; i < out.size(); ++i) out[i] = of_parts[of(i)];

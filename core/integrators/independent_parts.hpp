@@ -22,6 +22,7 @@ class IndependentParts {
   // Of each part the largest magnitude in rows of `columns` numbers, one for each coordinate.
   VectorXd largest(const double* x, Index columns = 1) const;
   VectorXd largest_of_rows(const VectorXd& x) const;  // one number for each constraint row
+  VectorXd largest_beside(const VectorXd& x) const;   // the same, of each row that of its part
   VectorXd spread(const VectorXd& of_parts) const;    // to coordinates
 
  private:

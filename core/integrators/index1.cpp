@@ -180,10 +180,11 @@ bool Index1::evaluate_closely(State state, VectorXd& acceleration, VectorXd& lam
     settle(force, rows, x, y);
   };
   system_.constraint(state.t, q_, phi_);
-  const double error = std::max(unit * q_.lpNorm<Eigen::Infinity>(), phi_.lpNorm<Eigen::Infinity>());
+  const IndependentParts parts(system_);
+  const VectorXd error = parts.largest_beside(phi_).cwiseMax(unit * q_.lpNorm<Eigen::Infinity>());
   for (Index r = 0; r < m; ++r) rows[r] = std::cos(1.0 + static_cast<double>(r));
   solve();
-  rows = y * (error / std::max(y.lpNorm<Eigen::Infinity>(), 1e-300));
+  rows = y.cwiseProduct(error.cwiseQuotient(parts.largest_beside(y).cwiseMax(1e-300)));
   answer(rows, x, y);
   state.z += x;
   move_rates(state, rows, x, y);
@@ -197,28 +198,27 @@ bool Index1::evaluate_closely(State state, VectorXd& acceleration, VectorXd& lam
   return true;
 }
 
-namespace {
-
-// By what multipliers are more than what they answer, where that is more than redundant rows make of it.
-double weakness_of(const VectorXd& lambda, double acts, const VectorXd& inertia) {
-  constexpr double much = 1e4;
-  const double answered = std::max(acts, largest_magnitude(inertia.data(), inertia.size()));
-  const double most = largest_magnitude(lambda.data(), lambda.size());
-  return most > much * answered && answered > 0 ? most / answered : std::numeric_limits<double>::infinity();
+// By what multipliers are more than what they answer, both of each part, where that is most.
+double Index1Lanes::by_parts(const VectorXd& lambda, const VectorXd& answered) const {
+  const VectorXd most = parts_.largest_of_rows(lambda);
+  double out = 0;
+  for (Index p = 0; p < most.size(); ++p)
+    if (answered[p] > 0) out = std::max(out, most[p] / answered[p]);
+  return out;
 }
 
-}  // namespace
-
-Index1Lanes::Index1Lanes(const System& system) : system_(system), one_(system_, true), lanes_(one_.saddle_) {
+Index1Lanes::Index1Lanes(const System& system)
+    : system_(system), one_(system_, true), lanes_(one_.saddle_), parts_(system_) {
   mixed_.resize(system.solved_coordinates());
   for (Index i = 0; i < mixed_.size(); ++i) mixed_[i] = std::cos(1.0 + static_cast<double>(i));
   none_ = VectorXd::Zero(mixed_.size());
-  size_ = mixed_.size() > 0 ? (system_.mass() * mixed_).lpNorm<Eigen::Infinity>() : 1.0;
+  size_ = parts_.largest(VectorXd(system_.mass() * mixed_).data());
 }
 
 void Index1Lanes::evaluate(std::span<const State* const> states) {
+  constexpr double much = 1e4;  // beyond what redundant rows make of it
   SaddleLanes::Vectors none, rows, own_acceleration, own_lambda;
-  std::array<double, SaddleLanes::lanes> acts{};
+  SaddleLanes::Vectors acts;
   for (std::size_t k = 0; k < ok_.size(); ++k) {
     force_[k].resize(0);
     if (k >= states.size()) continue;
@@ -227,7 +227,7 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
     one_.place(s.t, s.z, s.w, s.tension);
     lanes_.set(static_cast<int>(k), one_.G_);
     force_[k] = one_.force_;
-    acts[k] = largest_magnitude(one_.force_.data(), one_.force_.size());
+    acts[k] = parts_.largest(one_.force_.data());
     bias_[k] = one_.bias_;
     own_acceleration[k].resize(force_[k].size());
     own_lambda[k].resize(bias_[k].size());
@@ -248,25 +248,29 @@ void Index1Lanes::evaluate(std::span<const State* const> states) {
       weakness_[k] = 1 / std::sqrt(pivot);
     } else {
       one_.saddle_.solve(none[k], rows[k], own_acceleration[k], own_lambda[k], -1);
-      weakness_[k] = own_lambda[k].lpNorm<Eigen::Infinity>() / size_;
+      weakness_[k] = by_parts(own_lambda[k], size_);
     }
     one_.settle(force_[k], bias_[k], own_acceleration[k], own_lambda[k]);
     for (VectorXd* done : {&force_[k], &none[k]}) done->resize(0);
   }
   lanes_.solve(none, rows, acceleration_, lambda_, -1);
   for (std::size_t k = 0; k < states.size(); ++k)
-    if (ok_[k] && !alone[k]) weakness_[k] = lambda_[k].lpNorm<Eigen::Infinity>() / size_;
+    if (ok_[k] && !alone[k]) weakness_[k] = by_parts(lambda_[k], size_);
   const SaddleLanes::Norms left = lanes_.solve(force_, bias_, acceleration_, lambda_, one_.refinements());
   for (std::size_t k = 0; k < states.size(); ++k) {
     if (ok_[k] && !alone[k] && left[k] > unsettled && lanes_.hand_over(static_cast<int>(k), one_.saddle_)) {
       one_.settle(force_[k], bias_[k], acceleration_[k], lambda_[k]);
       if (one_.saddle_.fine()) {
         one_.saddle_.solve(none[k], rows[k], own_acceleration[k], own_lambda[k]);
-        weakness_[k] = own_lambda[k].lpNorm<Eigen::Infinity>() / size_;
+        weakness_[k] = by_parts(own_lambda[k], size_);
       }
     }
     if (alone[k]) acceleration_[k] = own_acceleration[k], lambda_[k] = own_lambda[k];
-    if (in_doubt[k]) weakness_[k] = weakness_of(lambda_[k], acts[k], system_.mass() * acceleration_[k]);
+    if (in_doubt[k]) {
+      const VectorXd inertia = parts_.largest(VectorXd(system_.mass() * acceleration_[k]).data());
+      const double times = by_parts(lambda_[k], acts[k].cwiseMax(inertia));
+      weakness_[k] = times > much ? times : std::numeric_limits<double>::infinity();
+    }
     ok_[k] = ok_[k] && acceleration_[k].allFinite() && lambda_[k].allFinite();
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 
+#include "core/integrators/independent_parts.hpp"
 #include "core/math/saddle_lanes.hpp"
 #include "core/system/system.hpp"
 
@@ -49,7 +50,8 @@ class Index1 {
   // evaluate() at a state next to a pose where the rank falls, x from it, and how far each multiplier may be
   // off. The state is moved onto the constraints first, as far as round-off lets it: what its step left there
   // may be more. `doubt`, from above: the answer of the multipliers, to first order, to an error as large as
-  // round-off in the rows, all of which add up in the weakest direction; that is 1e-16 / x^3 of the forces.
+  // round-off in the rows, all of which add up in the weakest direction of each independent part; that is
+  // 1e-16 / x^3 of the forces.
   bool evaluate_closely(State state, VectorXd& acceleration, VectorXd& lambda, VectorXd& doubt);
 
  private:
@@ -84,17 +86,18 @@ class Index1Lanes {
   const VectorXd& acceleration(std::size_t k) const { return acceleration_[k]; }
   const VectorXd& lambda(std::size_t k) const { return lambda_[k]; }
   // About 1 / s, s the smallest singular value but for those of redundant rows, or somewhat less: the
-  // multipliers that answer G x over M x, x of every direction something. Where doubles may
-  // not tell a weak direction from a redundant row: no bound, or how many times multipliers are what they
-  // answer, where that tells.
+  // multipliers that answer G x over M x, x of every direction something, in the independent part where that
+  // is most. Where doubles may not tell a weak direction from a redundant row: no bound, or how many times
+  // multipliers are what they answer, where that tells.
   double weakness(std::size_t k) const { return weakness_[k]; }
 
  private:
+  double by_parts(const VectorXd& lambda, const VectorXd& answered) const;
   System system_;  // follows each state in turn
   Index1 one_;
   SaddleLanes lanes_;
-  VectorXd mixed_, none_;
-  double size_ = 0;  // of M times what is mixed
+  IndependentParts parts_;
+  VectorXd mixed_, none_, size_;  // size_: of M times what is mixed, of each part
   std::array<bool, SaddleLanes::lanes> ok_{};
   std::array<double, SaddleLanes::lanes> weakness_{};
   SaddleLanes::Vectors force_, bias_, acceleration_, lambda_;

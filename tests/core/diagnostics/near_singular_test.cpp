@@ -111,6 +111,54 @@ TEST_CASE("a step's own error next to a singular pose does not come back in the 
   }
 }
 
+// A parallelogram that turns evenly past its flat pose, a state 1e-5 rad behind that, beside a pendulum that
+// weighs a million times as much: legs pull with w^2 l times half of themselves, which is a third of the leg
+// and half of the coupler. The state alone has them off by some 1e-16 / 1e-5^3 of that, beside it by 1e-9.
+TEST_CASE("forces next to a singular pose are as well known beside a body that is far heavier") {
+  for (const char* mass : {"1", "1e-3"})
+    for (const char* beside : {"0.5", "1e3", "1e6"}) {
+      CAPTURE(mass, beside);
+      const Scene scene = read_scene_text(
+          R"toml([variables]
+m = 1
+M = 1
+a = "=1e-5-0.5"
+[structure]
+kind = "custom"
+nodes = [{name = "A0", position = [0, 0, 0], fixed = true}, {name = "A1", position = [2, 0, 0], fixed = true},
+  {name = "B0", position = ["=cos(a)", 0, "=sin(a)"], velocity = ["=-sin(a)", 0, "=cos(a)"]},
+  {name = "B1", position = ["=2+cos(a)", 0, "=sin(a)"], velocity = ["=-sin(a)", 0, "=cos(a)"]},
+  {name = "O", position = [0, 5, 0], fixed = true}, {name = "P", position = [1, 5, 0], velocity = [0, 0, 2]}]
+rods = [{nodes = ["A0", "B0"], mass = "=m"}, {nodes = ["B0", "B1"], mass = "=m"}, {nodes = ["A1", "B1"], mass = "=m"},
+  {nodes = ["O", "P"], mass = "=M"}]
+[[structure.constraints]]
+kind = "plane"
+nodes = ["B*", "P"]
+normal = [0, 1, 0]
+[solver]
+stages = 4
+step = 0.01
+end_time = 1
+)toml",
+          "s.toml", {"variables.m=" + std::string(mass), "variables.M=" + std::string(beside)});
+      const Simulation run = simulate(build_model(scene), scene.solver);
+      const Diagnostics d = diagnose(run);
+      const double leg = 5.0 / 6 * std::stod(mass), arm = 4.0 / 3 * std::stod(beside);
+      for (Index i = 0; i < std::ssize(d.t); ++i) {
+        CAPTURE(d.t[static_cast<std::size_t>(i)]);
+        const double known[] = {leg, 0, leg, arm};
+        for (Index rod = 0; rod < 4; ++rod) {
+          CAPTURE(rod, d.axial_force(i, rod));
+          // Twice what is not told.
+          if (d.force_unique(i, rod))
+            CHECK(std::abs(d.axial_force(i, rod) - known[rod]) <= 2e-4 * (rod < 3 ? leg : arm));
+        }
+        CHECK(d.force_unique(i, 3));
+        if (std::abs(d.t[static_cast<std::size_t>(i)] - 0.5) > 1e-6) CHECK(d.force_unique(i, 0));
+      }
+    }
+}
+
 // Rods in a line across their weight pull without bound: no polynomial leads through that, and what the pose
 // itself says stays, with its doubt. (Four windows at 4.599375 s: 1e4 N, of which round-off says half.)
 TEST_CASE("forces that grow without bound next to a singular pose are not smoothed over") {
