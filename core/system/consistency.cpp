@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "core/math/coupled_columns.hpp"
 #include "core/math/factors.hpp"
 #include "core/math/singular_values.hpp"
 #include "core/structure/node_positions.hpp"
@@ -32,12 +33,14 @@ constexpr double violated = 1e-7;
 constexpr double dependent = 1e-10;
 
 // Rows of unit size, and what they were divided by. What is none of the equations is zero.
-MatrixXd dense_unit_rows(const System& system, const VectorXd& q, VectorXd& norms) {
-  MatrixXd G(system.all_jacobian(q));
-  for (const int r : system.rows_of_digits()) G.row(r).setZero();
-  norms = G.rowwise().norm();
-  for (Index r = 0; r < G.rows(); ++r)
+SparseRows unit_rows(const System& system, const VectorXd& q, VectorXd& norms) {
+  SparseRows G(system.all_jacobian(q));
+  for (const int r : system.rows_of_digits()) G.row(r) *= 0;
+  norms.resize(G.rows());
+  for (int r = 0; r < G.rows(); ++r) {
+    norms[r] = G.row(r).norm();
     if (norms[r] > 0) G.row(r) /= norms[r];
+  }
   return G;
 }
 
@@ -77,8 +80,8 @@ class Checker {
     check_positions();
     const bool driven = !system_.drives().empty();
     if (!driven && system_.all_constraints() < system_.coordinates()) return;
-    if (system_.coordinates() > max_coordinates) return check_freedom_of_many();
-    G_ = dense_unit_rows(system_, q_, norms_);
+    if (!driven && system_.coordinates() > max_coordinates) return check_freedom_of_many();
+    G_ = unit_rows(system_, q_, norms_);
     if (driven)
       for (const Drive& drive : system_.drives()) check_drive(drive);
     else if (!elastic_ && !warms_)
@@ -117,15 +120,36 @@ class Checker {
   }
 
   // Row r as a sum of the others, share by share; empty where it is none. Others that are a change of 1/|y|
-  // of their size away from leaving the motion free count as leaving it below what counts as dependent.
-  static VectorXd combination(const MatrixXd& G, Index r) {
-    MatrixXd A = G.transpose();
-    A.col(r).setZero();
-    const VectorXd row = G.row(r).transpose(), y = least_squares(A, row);
+  // of their size away from leaving the motion free count as leaving it below what counts as dependent. Of
+  // those that share no coordinate with it, be it through others, its shares are zero.
+  static VectorXd combination(const SparseRows& G, int r) {
+    CoupledColumns sets(G.cols());
+    sets.join_rows_of(G);
+    const auto set_of_row = [&](int k) {
+      const SparseRows::InnerIterator it(G, k);
+      return it ? sets.set_of(it.col()) : -1;
+    };
+    std::vector<Index> rows, place(static_cast<std::size_t>(G.cols()), 0);
+    for (int k = 0; k < G.rows(); ++k)
+      if (set_of_row(k) == set_of_row(r)) rows.push_back(k);
+    Index count = 0;
+    for (Index k = 0; k < G.cols(); ++k)
+      if (sets.set_of(k) == set_of_row(r)) place[static_cast<std::size_t>(k)] = count++;
+    if (count > max_coordinates) return {};
+    MatrixXd A = MatrixXd::Zero(count, std::ssize(rows));
+    for (Index k = 0; k < A.cols(); ++k)
+      for (SparseRows::InnerIterator it(G, rows[static_cast<std::size_t>(k)]); it; ++it)
+        A(place[static_cast<std::size_t>(it.col())], k) = it.value();
+    const Index own = std::ranges::find(rows, r) - rows.begin();
+    const VectorXd row = A.col(own);
+    A.col(own).setZero();
+    const VectorXd y = least_squares(A, row);
     constexpr double round_off = 1e-13;  // of each share
     const double most = y.norm(), left = (A * y - row).norm();
     if (most * dependent_row > 1 || left > std::max(dependent, round_off * most)) return {};
-    return y;
+    VectorXd shares = VectorXd::Zero(G.rows());
+    shares(rows) = y;
+    return shares;
   }
   static std::vector<Index> members_of(const VectorXd& shares) {
     std::vector<Index> found;
@@ -141,7 +165,7 @@ class Checker {
 
   // A drive whose row follows from rows that stand still asks them to move.
   void check_drive(const Drive& drive) const {
-    const auto row = std::find(sources_.begin(), sources_.end(), drive.constraint) - sources_.begin();
+    const auto row = static_cast<int>(std::ranges::find(sources_, drive.constraint) - sources_.begin());
     std::vector<std::string> held;
     const VectorXd shares = combination(G_, row);
     for (const Index k : members_of(shares)) {
@@ -155,11 +179,11 @@ class Checker {
   }
 
   // Rows that depend on each other in every pose must ask for the same: g'_r = sum share_k g'_k at all times.
-  void check_agreement(Index row, const VectorXd& shares) const {
+  void check_agreement(int row, const VectorXd& shares) const {
     VectorXd moved = q_, norms_moved;
     const double shift = 1e-3 * extent_of_nodes();
     for (Index i = 0; i < moved.size(); ++i) moved[i] += shift * std::sin(1.0 + 2.3 * static_cast<double>(i));
-    const VectorXd shares_moved = combination(dense_unit_rows(system_, moved, norms_moved), row);
+    const VectorXd shares_moved = combination(unit_rows(system_, moved, norms_moved), row);
     if (shares_moved.size() == 0 || (shares_moved - shares).norm() > 1e-6 * shares.norm()) return;
     for (const double t : times_of_drives()) {
       const VectorXd wanted = unit_rates(system_, t, q_, norms_);
@@ -191,10 +215,11 @@ class Checker {
 
   // By the tolerance of check's degrees of freedom: what has none stands still.
   void check_freedom() const {
-    if (rank_of(G_, 0.01 * dependent_row) < G_.cols()) return;  // as nearly always, and cheaper
-    const VectorXd values = singular_values(G_);
-    if (values.size() < G_.cols() || !(values[G_.cols() - 1] > dependent_row)) return;
-    refuse_to_stand_still(too_few_digits(values[G_.cols() - 1]));
+    const MatrixXd G(G_);
+    if (rank_of(G, 0.01 * dependent_row) < G.cols()) return;  // as nearly always, and cheaper
+    const VectorXd values = singular_values(G);
+    if (values.size() < G.cols() || !(values[G.cols() - 1] > dependent_row)) return;
+    refuse_to_stand_still(too_few_digits(values[G.cols() - 1]));
   }
   // By sparse elimination. Families of many parts are made to move.
   void check_freedom_of_many() const {
@@ -237,7 +262,7 @@ class Checker {
   bool elastic_;    // a truss that stands still has forces and frequencies all the same
   bool warms_;      // a row prescribes a motion, whenever that is
   bool own_;        // a scene's own structure
-  MatrixXd G_;      // unit rows
+  SparseRows G_;    // unit rows
   VectorXd norms_;
 };
 
@@ -251,7 +276,7 @@ std::string driven_against(const System& system, double t, const VectorXd& q) {
   constexpr double too_much = 1e-3;  // of the rates
   if (system.coordinates() > max_coordinates) return "";
   VectorXd norms;
-  const MatrixXd G = dense_unit_rows(system, q, norms);
+  const MatrixXd G(unit_rows(system, q, norms));
   const VectorXd wanted = unit_rates(system, t, q, norms);
   const double most = wanted.size() > 0 ? wanted.lpNorm<Eigen::Infinity>() : 0.0;
   if (!(most > 0)) return "";

@@ -154,4 +154,38 @@ TEST_CASE("what cannot move is refused however large it is and moves with a brac
   }
 }
 
+// Each mechanism by itself: what others have says nothing, be they hundreds.
+TEST_CASE("a drive against what holds it is named among hundreds of mechanisms") {
+  const auto refused = [](int arms, const char* held) {
+    return testing::error_of(R"toml([variables]
+n = )toml" + std::to_string(arms) +
+                             R"toml(
+[structure]
+kind = "custom"
+nodes = [{repeat = {i = "0:n"}, name = "O{i}", position = [0, "=i", 0], fixed = true},
+  {repeat = {i = "0:n"}, name = "P{i}", position = [1, "=i", 0]}, {name = "X", position = [2, 0, 0], fixed = true}]
+rods = [{repeat = {i = "0:n"}, nodes = ["O{i}", "P{i}"], mass = 1}]
+[[constraints]]
+kind = "plane"
+nodes = ["P*"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "angle"
+name = "motor"
+nodes = ["X", "O0", "P0"]
+axis = [0, -1, 0]
+motion = "rate"
+rate = 10
+[[constraints]]
+kind = "line"
+name = "guide"
+nodes = [")toml" + held + "\"]\ndirection = [1, 0, 0]\n");
+  };
+  for (const int arms : {2, 400}) {
+    CAPTURE(arms);
+    CHECK(refused(arms, "P1") == "");
+    CHECK(refused(arms, "P0").find("the drive motor moves what other constraints hold") != std::string::npos);
+  }
+}
+
 }  // namespace consistency_test
