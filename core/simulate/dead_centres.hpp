@@ -2,7 +2,8 @@
 // Steps that throw rods over a dead centre which their drives do not reach.
 #pragma once
 
-#include <optional>
+#include <memory>
+#include <vector>
 
 #include "core/simulate/singular_poses.hpp"
 
@@ -28,20 +29,27 @@ class DeadCentres {
     double turn = 0;  // [s]
   };
   Verdict judge(const State& from, const State& to);
-  // Whether a state is that of a dead centre, as far as doubles tell. Behind judge().
+  // Whether a state is in that dead centre, as far as doubles tell. Behind such a verdict.
   bool in_one(const State& state);
 
  private:
-  bool slows(double from, double to) const;
-  bool prepare(const State& from, const State& to);
+  // What no row joins to others, and its drives.
+  struct Part {
+    std::vector<Drive> drives;
+    std::unique_ptr<SmallestSingularValue> sigma;
+    VectorXd known_at = {};  // coordinates, from which on
+    double left = 0;         // its Jacobian may change by so much before it loses rank
+  };
+  void find_parts(const State& from, const State& to);
+  Verdict judge(Part& part, const State& from, const State& to) const;
   bool beside(const State& in_one, const SmallestSingularValue::Pair& pair, double c) const;
-  Verdict parabola(const State& near, const State& far, const SmallestSingularValue::Pair& pair);
+  Verdict parabola(const Part& of, const State& near, const State& far,
+                   const SmallestSingularValue::Pair& pair) const;
 
   const System& system_;
-  std::optional<SmallestSingularValue> sigma_;
-  bool known_ = false;  // sigma_ is, or there is none
-  VectorXd known_at_;   // coordinates, from which on
-  double left_ = 0;     // the Jacobian may change by so much before it loses rank
+  bool known_ = false;  // which parts there are
+  std::vector<Part> parts_;
+  Part* judged_ = nullptr;  // of the last verdict
 };
 
 }  // namespace unfurl

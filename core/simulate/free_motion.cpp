@@ -18,18 +18,6 @@ namespace {
 constexpr double free_enough = 1e-14;
 constexpr int free_columns = 8, most_halvings = 8, most_evaluations = 4000;
 
-SparseRows among(const SparseRows& A, const std::vector<int>& rows, const std::vector<Index>& place,
-                 Index columns) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    for (SparseRows::InnerIterator it(A, rows[k]); it; ++it)
-      if (const Index column = place[static_cast<std::size_t>(it.col())]; column >= 0)
-        entries.emplace_back(static_cast<int>(k), static_cast<int>(column), it.value());
-  SparseRows out(std::ssize(rows), columns);
-  out.setFromTriplets(entries.begin(), entries.end());
-  return out;
-}
-
 }  // namespace
 
 std::vector<Index> free_coordinates(const System& system, const State& state) {
@@ -53,42 +41,28 @@ std::vector<Index> free_coordinates(const System& system, const State& state) {
 
 FreeMotion::FreeMotion(const System& system, std::vector<Index> free)
     : system_(system),
-      free_(std::move(free)),
-      place_(static_cast<std::size_t>(system.solved_coordinates()), -1),
       jacobian_(system.jacobian_pattern()),
+      part_(jacobian_, std::move(free)),
+      rows_of_free_(part_.of(jacobian_)),
+      saddle_(std::make_unique<SaddleSolver>(part_.of_square(system.mass()), rows_of_free_)),
       acceleration_(system.solved_coordinates()),
       lambda_(VectorXd::Zero(system.constraints())),
       q_(system.coordinates()),
       v_(system.coordinates()),
       f_(system.coordinates()),
       force_(system.solved_coordinates()),
-      bias_(system.constraints()) {
-  std::vector<int> columns;
-  for (std::size_t k = 0; k < free_.size(); ++k) {
-    place_[static_cast<std::size_t>(free_[k])] = static_cast<Index>(k);
-    columns.push_back(static_cast<int>(free_[k]));
-  }
-  for (int r = 0; r < jacobian_.outerSize(); ++r)
-    for (SparseRows::InnerIterator it(jacobian_, r); it; ++it)
-      if (place_[static_cast<std::size_t>(it.col())] >= 0) {
-        rows_.push_back(r);
-        break;
-      }
-  const Index count = std::ssize(free_);
-  rows_of_free_ = among(jacobian_, rows_, place_, count);
-  saddle_ = std::make_unique<SaddleSolver>(among(system.mass(), columns, place_, count), rows_of_free_);
-}
+      bias_(system.constraints()) {}
 
 void FreeMotion::put(const VectorXd& y, State& state) const {
-  const Index n = std::ssize(free_);
-  state.z(free_) = y.head(n);
-  state.w(free_) = y.tail(n);
+  const Index n = std::ssize(coordinates());
+  state.z(coordinates()) = y.head(n);
+  state.w(coordinates()) = y.tail(n);
 }
 
 // M_ff a + G_f^T lambda = F - M_fl a_l, G_f a = -bias - G_l a_l.
 bool FreeMotion::solve(const State& state, VectorXd& acceleration, VectorXd& lambda) {
-  const Index n = std::ssize(free_);
-  acceleration(free_).setZero();
+  const Index n = std::ssize(coordinates());
+  acceleration(coordinates()).setZero();
   system_.expand(state.z, q_);
   system_.expand_rate(state.w, v_);
   system_.jacobian(q_, jacobian_, scratch_);
@@ -103,26 +77,32 @@ bool FreeMotion::solve(const State& state, VectorXd& acceleration, VectorXd& lam
   force_ -= system_.mass() * acceleration;
   system_.constraint_bias(state.t, q_, v_, bias_);
   bias_ = -bias_ - jacobian_ * acceleration;
-  rows_of_free_ = among(jacobian_, rows_, place_, n);
+  rows_of_free_ = part_.of(jacobian_);
   if (!saddle_->factorise(rows_of_free_)) return false;
-  VectorXd a(n), multipliers(std::ssize(rows_));
-  saddle_->solve(force_(free_), bias_(rows_), a, multipliers);
-  acceleration(free_) = a;
-  lambda(rows_) = multipliers;
+  VectorXd a(n), multipliers(std::ssize(rows()));
+  saddle_->solve(force_(coordinates()), bias_(rows()), a, multipliers);
+  acceleration(coordinates()) = a;
+  lambda(rows()) = multipliers;
   return a.allFinite() && multipliers.allFinite();
 }
 
-Index FreeMotion::rows_below(const State& state, double bound) {
+bool FreeMotion::factorise(const State& state) {
   system_.expand(state.z, q_);
   system_.jacobian(q_, jacobian_, scratch_);
-  rows_of_free_ = among(jacobian_, rows_, place_, std::ssize(free_));
-  return saddle_->factorise(rows_of_free_) ? saddle_->rows_below(bound) : 0;
+  rows_of_free_ = part_.of(jacobian_);
+  return saddle_->factorise(rows_of_free_);
+}
+Index FreeMotion::rows_below(const State& state, double bound) {
+  return factorise(state) ? saddle_->rows_below(bound) : 0;
+}
+double FreeMotion::weakest_pivot(const State& state, double bound) {
+  return factorise(state) ? saddle_->weakest_pivot(bound) : bound;
 }
 
 VectorXd FreeMotion::felt(const State& state, const VectorXd& acceleration, const VectorXd& lambda) {
   VectorXd of_rows = VectorXd::Zero(lambda.size()), of_free = VectorXd::Zero(acceleration.size());
-  of_rows(rows_) = lambda(rows_);
-  of_free(free_) = acceleration(free_);
+  of_rows(rows()) = lambda(rows());
+  of_free(coordinates()) = acceleration(coordinates());
   system_.expand(state.z, q_);
   system_.jacobian(q_, jacobian_, scratch_);
   return jacobian_.transpose() * of_rows + system_.mass() * of_free;
@@ -130,19 +110,19 @@ VectorXd FreeMotion::felt(const State& state, const VectorXd& acceleration, cons
 
 bool FreeMotion::slope(double t, const VectorXd& y, VectorXd& out) {
   if (--left_ < 0) return false;
-  const Index n = std::ssize(free_);
+  const Index n = std::ssize(coordinates());
   (*led_)(t, state_, acceleration_);
   put(y, state_);
   state_.t = t;
   if (!solve(state_, acceleration_, lambda_)) return false;
   out.resize(2 * n);
-  out << y.tail(n), acceleration_(free_);
+  out << y.tail(n), acceleration_(coordinates());
   return true;
 }
 
 // Gragg's midpoint rule with 2, 4, 6, ... parts, extrapolated to none.
 bool FreeMotion::extrapolate(double from, double to, const VectorXd& y, VectorXd& out, double& error) {
-  const Index n = std::ssize(free_);
+  const Index n = std::ssize(coordinates());
   VectorXd start, middle;
   if (!slope(from, y, start)) return false;
   std::vector<VectorXd> row;
@@ -186,13 +166,13 @@ bool FreeMotion::go(double from, double to, VectorXd& y, double& error, int halv
 }
 
 double FreeMotion::move(State& state, double end, const std::vector<double>& edges, const Led& led) {
-  const Index n = std::ssize(free_);
+  const Index n = std::ssize(coordinates());
   led_ = &led;
   left_ = most_evaluations;
   state_ = state;
   size_ = state.z.lpNorm<Eigen::Infinity>();
   VectorXd y(2 * n);
-  y << state.z(free_), state.w(free_);
+  y << state.z(coordinates()), state.w(coordinates());
   double error = 0, from = state.t;
   const auto reach = [&](double to) {
     const double start = std::exchange(from, to), last = before_jump(to);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/math/saddle_solver.hpp"
+#include "core/math/sparse_part.hpp"
 #include "core/system/state.hpp"
 #include "core/system/system.hpp"
 
@@ -22,8 +23,8 @@ class FreeMotion {
   // The system must outlive it.
   FreeMotion(const System& system, std::vector<Index> free);
 
-  const std::vector<Index>& coordinates() const { return free_; }
-  const std::vector<int>& rows() const { return rows_; }  // the constraints that it takes part in
+  const std::vector<Index>& coordinates() const { return part_.columns(); }
+  const std::vector<int>& rows() const { return part_.rows(); }  // the constraints that it takes part in
 
   // Coordinates and rates of what is led, and its accelerations, at a time.
   using Led = std::function<void(double t, State& state, VectorXd& acceleration)>;
@@ -34,22 +35,24 @@ class FreeMotion {
   bool solve(const State& state, VectorXd& acceleration, VectorXd& lambda);
   // How many of its rows are so weak, in a state.
   Index rows_below(const State& state, double bound);
+  // The smallest pivot of them, looked for below `bound` (SaddleSolver).
+  double weakest_pivot(const State& state, double bound);
   // What the rest feels of it then: by those rows, and by inertia that both share.
   VectorXd felt(const State& state, const VectorXd& acceleration, const VectorXd& lambda);
 
  private:
+  bool factorise(const State& state);
   bool slope(double t, const VectorXd& y, VectorXd& out);
   bool extrapolate(double from, double to, const VectorXd& y, VectorXd& out, double& error);
   bool go(double from, double to, VectorXd& y, double& error, int halvings);
   void put(const VectorXd& y, State& state) const;
 
   const System& system_;
-  std::vector<Index> free_;
-  std::vector<Index> place_;  // of each solved coordinate among them; -1: it is led
-  std::vector<int> rows_;     // that have entries in them
-  SparseRows jacobian_, rows_of_free_;
-  std::vector<double> scratch_;
+  SparseRows jacobian_;
+  SparsePart part_;
+  SparseRows rows_of_free_;
   std::unique_ptr<SaddleSolver> saddle_;
+  std::vector<double> scratch_;
   const Led* led_ = nullptr;
   int left_ = 0;  // evaluations
   double size_ = 0;

@@ -11,14 +11,15 @@
 namespace unfurl {
 
 VectorXd resting_coordinates(const System& system, double t, double h) {
-  constexpr double still = 1e-9;  // [m], in a step
+  constexpr double still = 1e-9;  // of the row's length, in a step
   const SparseRows rows = system.jacobian_pattern();
   CoupledColumns columns(rows.cols());
   columns.join_rows_of(rows);
   VectorXd rate(system.constraints()), moves = VectorXd::Zero(rows.cols()), rests = moves;
   system.target_rate(t, rate);
   for (int r = 0; r < rows.outerSize(); ++r)
-    if (SparseRows::InnerIterator it(rows, r); it && std::abs(rate[r]) * h > still)
+    if (SparseRows::InnerIterator it(rows, r);
+        it && std::abs(rate[r]) * h > still * system.constraint_lengths()[r])
       moves[columns.set_of(it.col())] = 1;
   for (Index i = 0; i < rests.size(); ++i) rests[i] = 1 - moves[columns.set_of(i)];
   return rests;

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
+#include <utility>
 
+#include "core/integrators/independent_parts.hpp"
 #include "core/math/determined_rows.hpp"
 #include "core/math/factors.hpp"
 #include "core/math/singular_values.hpp"
@@ -50,16 +54,28 @@ VectorXd scale_rows(SparseRows& G) {
 
 }  // namespace
 
-SmallestSingularValue::SmallestSingularValue(const System& system, Index redundant, Index count)
-    : system_(system),
-      by_rows_(system.constraints() <= system.solved_coordinates()),
-      zeros_(by_rows_ ? redundant : redundant + system.solved_coordinates() - system.constraints()),
+const SparseRows& JacobianInPoses::at(const ConstVec& z) {
+  if (z_.size() == z.size() && std::equal(z.begin(), z.end(), z_.begin())) return G_;
+  z_ = z;
+  system_.expand(z, q_);
+  system_.jacobian(q_, G_, scratch_);
+  return G_;
+}
+
+SmallestSingularValue::SmallestSingularValue(std::shared_ptr<JacobianInPoses> jacobian, SparsePart part,
+                                             Index redundant, Index count)
+    : whole_(std::move(jacobian)),
+      part_(std::move(part)),
       count_(count),
-      G_(system.jacobian_pattern()),
-      saddle_(identity(system.solved_coordinates()), G_, most_columns, shift,
-              SaddleSolver::Order::sparse_first),
-      q_(system.coordinates()) {
-  const Index size = std::min(system.constraints(), system.solved_coordinates());
+      G_(part_.of(whole_->pattern())),
+      saddle_(identity(G_.cols()), G_, most_columns, shift, SaddleSolver::Order::sparse_first) {
+  by_rows_ = G_.rows() <= G_.cols();
+  zeros_ = by_rows_ ? redundant : redundant + G_.cols() - G_.rows();
+  SparseRows places = whole_->pattern();
+  std::iota(places.valuePtr(), places.valuePtr() + places.nonZeros(), 0.0);
+  const SparseRows of_part = part_.of(places);
+  from_.assign(of_part.valuePtr(), of_part.valuePtr() + of_part.nonZeros());
+  const Index size = std::min(G_.rows(), G_.cols());
   block_.resize(size, std::min(size, zeros_ + count_ + 1));
   for (Index c = 0; c < block_.cols(); ++c) stir(c);
 }
@@ -73,8 +89,8 @@ void SmallestSingularValue::stir(Index column) {
 void SmallestSingularValue::jacobian(const ConstVec& z) {
   if (z_.size() == z.size() && std::equal(z.begin(), z.end(), z_.begin())) return;
   z_ = z;
-  system_.expand(z, q_);
-  system_.jacobian(q_, G_, scratch_);
+  const double* const whole = whole_->at(z).valuePtr();
+  for (std::size_t k = 0; k < from_.size(); ++k) G_.valuePtr()[k] = whole[from_[k]];
   lengths_ = scale_rows(G_);
 }
 
@@ -123,14 +139,20 @@ std::vector<SmallestSingularValue::Pair> SmallestSingularValue::pairs() const {
   for (Index k = zeros_; k < std::min(zeros_ + count_, block_.cols()); ++k) {
     const VectorXd here = block_.col(k),
                    there = (by_rows_ ? VectorXd(G_.transpose() * here) : VectorXd(G_ * here)).normalized();
-    pairs.push_back({sigma_[k], by_rows_ ? here : there, by_rows_ ? there : here, lengths_});
+    const SparseRows& whole = whole_->pattern();
+    Pair pair{sigma_[k], VectorXd::Zero(whole.rows()), VectorXd::Zero(whole.cols()),
+              VectorXd::Ones(whole.rows())};
+    pair.u(part_.rows()) = by_rows_ ? here : there;
+    pair.v(part_.columns()) = by_rows_ ? there : here;
+    pair.lengths(part_.rows()) = lengths_;
+    pairs.push_back(std::move(pair));
   }
   return pairs;
 }
 
 double SmallestSingularValue::between(const Pair& pair, const ConstVec& z) {
   jacobian(z);
-  return pair.u.dot(G_ * pair.v);
+  return pair.u(part_.rows()).dot(G_ * pair.v(part_.columns()));
 }
 
 // With b in the place of f or of g, [I G^T; G -e] [x; y] = [f; g] has the solutions
@@ -154,26 +176,55 @@ void SmallestSingularValue::improve() {
   sigma_ = ritz.values.cwiseMax(0.0).cwiseSqrt();
 }
 
-Index rank_at(const System& system, const ConstVec& z) {
-  SparseRows G = system.jacobian_pattern();
-  std::vector<double> scratch;
-  VectorXd q(system.coordinates());
-  system.expand(z, q);
-  system.jacobian(q, G, scratch);
+namespace {
+
+Index rank_of_rows(SparseRows G) {
   scale_rows(G);
   return rank_within(MatrixXd(G), no_rank);
 }
 
-Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std::size_t last) {
-  const System& system = trajectory.model(first).system;
-  if (system.constraints() == 0) return 0;  // all rods give
+}  // namespace
+
+Index rank_at(JacobianInPoses& jacobian, const SparsePart& part, const ConstVec& z) {
+  return rank_of_rows(part.of(jacobian.at(z)));
+}
+
+std::vector<SparsePart> parts_with_rows(const JacobianInPoses& jacobian) {
+  const System& system = jacobian.system();
+  const IndependentParts parts(system);
+  std::vector<std::vector<Index>> members(static_cast<std::size_t>(parts.count()));
+  std::vector<bool> any_row(members.size(), false);
+  std::vector<SparsePart> out;
+  for (Index i = 0; i < system.solved_coordinates(); ++i)
+    members[static_cast<std::size_t>(parts.of(i))].push_back(i);
+  for (Index r = 0; r < system.constraints(); ++r) any_row[static_cast<std::size_t>(parts.of_row(r))] = true;
+  for (std::size_t p = 0; p < members.size(); ++p)
+    if (any_row[p] && !members[p].empty()) out.emplace_back(jacobian.pattern(), std::move(members[p]));
+  return out;
+}
+
+namespace {
+
+// The largest rank of a few states of [first, last], of what `part` takes of the Jacobian.
+Index usual_rank(JacobianInPoses& jacobian, const auto& part, const Trajectory& trajectory, std::size_t first,
+                 std::size_t last) {
   Index rank = 0;
   constexpr int samples = 5;
   for (int k = 0; k < samples; ++k) {
     const std::size_t i = first + (last - first) * static_cast<std::size_t>(k) / (samples - 1);
-    rank = std::max(rank, rank_at(system, trajectory.state(i).z));
+    rank = std::max(rank, rank_of_rows(part(jacobian.at(trajectory.state(i).z))));
   }
-  return system.constraints() - rank;
+  return rank;
+}
+
+}  // namespace
+
+Index structural_redundancy(const Trajectory& trajectory, std::size_t first, std::size_t last) {
+  const System& system = trajectory.model(first).system;
+  if (system.constraints() == 0) return 0;  // all rods give
+  JacobianInPoses jacobian(system);
+  return system.constraints() - usual_rank(
+                                    jacobian, [](const SparseRows& G) { return G; }, trajectory, first, last);
 }
 
 bool singular_at_end(const Trajectory& trajectory, double flat) {
@@ -207,26 +258,97 @@ bool regular_when_deployed(Trajectory& trajectory, const State& event) {
 
 namespace {
 
-// States [first, last] of one model, at times that increase.
+// Of the fastest rod [rad/s].
+double spin(const Trajectory& trajectory, std::size_t i) {
+  double fastest = 0;
+  const VectorXd v = trajectory.node_velocities(i);
+  for (const Rod& rod : trajectory.structure().rods)
+    fastest = std::max(fastest, (v.segment<3>(3 * rod.b) - v.segment<3>(3 * rod.a)).norm() / rod.length);
+  return fastest;
+}
+
+// The times of states [first, last], and times between them where rods turn far in a step; fewer where there
+// are very many. `last` may become less.
+std::vector<double> sample_times(const Trajectory& trajectory, std::size_t first, std::size_t& last) {
+  const System& system = trajectory.model(first).system;
+  const auto size = static_cast<double>(system.constraints() + system.solved_coordinates());
+  const double most = std::max(3.0, most_work / (100 * size));  // sparse factors, some right sides
+  std::vector<double> spins, times;
+  for (std::size_t i = first; i <= last; ++i) spins.push_back(spin(trajectory, i));
+  // How far a rod turns in the step that follows state i, by the faster of its ends [rad].
+  const auto turn = [&](std::size_t i) {
+    return (trajectory.time(i + 1) - trajectory.time(i)) * std::max(spins[i - first], spins[i + 1 - first]);
+  };
+  // What turns a rod ten times round in a step has not been solved: nothing lies between the step's ends,
+  // nor behind it.
+  double turned = 0;
+  for (std::size_t i = first; i < last; ++i)
+    if (turn(i) <= 20 * pi)
+      turned += turn(i);
+    else
+      last = i;
+  const double states = static_cast<double>(last - first + 1);
+  const auto stride = static_cast<std::size_t>(std::ceil(std::max(1.0, states / most)));
+  const double each = std::max(most_turn, turned / std::max(1.0, most - states));
+  for (std::size_t i = first; i < last; i += stride) {
+    const double t = trajectory.time(i), h = trajectory.time(i + 1) - t;
+    const int parts_of_step = stride > 1 ? 1 : static_cast<int>(std::ceil(std::max(1.0, turn(i) / each)));
+    for (int k = 0; k < parts_of_step; ++k) times.push_back(t + h * k / parts_of_step);
+  }
+  times.push_back(trajectory.time(last));
+  return times;
+}
+
+VectorXd pose(const Trajectory& trajectory, std::size_t last, double t) {
+  const std::size_t i = trajectory.state_before(t);
+  return i < last && t > trajectory.time(i) ? trajectory.state_at(t).z
+                                            : trajectory.state(std::min(i, last)).z;
+}
+
+// Between states of one model, the last one of them `last`, at times that increase: of some coordinates.
 class DipSearch {
  public:
-  DipSearch(const Trajectory& trajectory, std::size_t first, std::size_t last)
-      : trajectory_(trajectory),
-        first_(first),
-        last_(last),
-        sigma_(trajectory.model(first).system, structural_redundancy(trajectory, first, last)) {}
-
-  void run(std::vector<Event>& events, const std::function<bool()>& cancelled) {
+  DipSearch(const Trajectory& trajectory, std::size_t last, const std::vector<double>& times,
+            const std::shared_ptr<JacobianInPoses>& jacobian, const SparsePart& part, Index redundant)
+      : trajectory_(trajectory), last_(last), times_(times), sigma_(jacobian, part, redundant) {
     if (sigma_.all_zeros()) return;
-    place_samples();
-    double largest = 0;
     for (std::size_t quarter = 1; quarter <= 3; ++quarter)
-      if (const double sigma = exact(quarter * (times_.size() - 1) / 4); sigma > largest) largest = sigma;
-    bool followed = false;  // the second time with the largest sigma of the first, the third without skipping
-    for (int pass = 0; pass < 3 && !followed; ++pass) followed = follow(pass < 2, largest, cancelled);
-    if (!followed) return;
+      if (const double s = exact(quarter * (times_.size() - 1) / 4); s > largest_) largest_ = s;
+  }
+
+  bool all_zeros() const { return sigma_.all_zeros(); }
+  // A pass over all samples, in their order: the first one, the second time with the largest sigma of the
+  // first, the third without skipping, as long as none was good enough.
+  void begin() { values_.clear(), kept_.clear(), way_ = 0, least_ = no_limit, bad_ = false; }
+  // sigma at a sample; with `skip` not at those that are too near to the last one for a dip, which are
+  // samples no more.
+  void look(std::size_t k, const VectorXd& z, bool skip) {
+    if (bad_) return;
+    if (ways_.size() == k) ways_.push_back(sigma_.moved(z));
+    way_ += ways_[k];
+    const double sigma = values_.empty() ? 0.0 : values_.back();
+    if (skip && k + 1 < times_.size() && way_ < 0.5 * (sigma - far_from_dips * largest_)) {
+      least_ = std::min(least_, sigma - way_);
+      return;
+    }
+    way_ = 0;
+    const bool near = !kept_.empty() && kept_.back() == times_[k - 1];
+    values_.push_back(near || !skip ? sigma_.estimate(z) : sigma_.at(z));
+    kept_.push_back(times_[k]);
+    bad_ = !std::isfinite(values_.back());
+    if (!bad_) largest_ = std::max(largest_, values_.back());
+  }
+  // False where too much was passed over, as the largest sigma shows afterwards, or where sigma is not
+  // finite.
+  bool end() {
+    if (bad_ || least_ <= 2 * dip * largest_) return false;
+    times_ = std::move(kept_);
+    return true;
+  }
+
+  void find(std::vector<Event>& events, const std::function<bool()>& cancelled) {
     if (values_.size() < 3) return;
-    largest =
+    const double largest =
         exact(static_cast<std::size_t>(std::max_element(values_.begin(), values_.end()) - values_.begin()));
     for (std::size_t k = 1; k + 1 < values_.size() && !(cancelled && cancelled()); ++k) {
       if (!(values_[k] <= values_[k - 1] && values_[k] < values_[k + 1] && values_[k] < 0.7 * largest) ||
@@ -238,75 +360,6 @@ class DipSearch {
   }
 
  private:
-  // sigma at the samples; with `skip` not at those that are too near to the last one for a dip, which are
-  // samples no more. False where too much was passed over, as the largest sigma shows afterwards, or where
-  // sigma is not finite.
-  bool follow(bool skip, double& largest, const std::function<bool()>& cancelled) {
-    values_.clear();
-    std::vector<double> times;
-    double way = 0, least = no_limit;  // least: that a sigma passed over may have
-    for (std::size_t k = 0; k < times_.size() && !(cancelled && cancelled()); ++k) {
-      const VectorXd z = pose(times_[k]);
-      if (ways_.size() == k) ways_.push_back(sigma_.moved(z));
-      way += ways_[k];
-      const double sigma = values_.empty() ? 0.0 : values_.back();
-      if (skip && k + 1 < times_.size() && way < 0.5 * (sigma - far_from_dips * largest)) {
-        least = std::min(least, sigma - way);
-        continue;
-      }
-      way = 0;
-      const bool near = !times.empty() && times.back() == times_[k - 1];
-      values_.push_back(near || !skip ? sigma_.estimate(z) : sigma_.at(z));
-      times.push_back(times_[k]);
-      if (!std::isfinite(values_.back())) return false;
-      largest = std::max(largest, values_.back());
-    }
-    if (least <= 2 * dip * largest) return false;
-    times_ = std::move(times);
-    return true;
-  }
-
-  // The states' own times, and times between them where rods turn far in a step; fewer where there are very
-  // many.
-  void place_samples() {
-    const System& system = trajectory_.model(first_).system;
-    const auto size = static_cast<double>(system.constraints() + system.solved_coordinates());
-    const double most = std::max(3.0, most_work / (100 * size));  // sparse factors, some right sides
-    std::vector<double> spins;
-    for (std::size_t i = first_; i <= last_; ++i) spins.push_back(spin(i));
-    // How far a rod turns in the step that follows state i, by the faster of its ends [rad].
-    const auto turn = [&](std::size_t i) {
-      return (trajectory_.time(i + 1) - trajectory_.time(i)) *
-             std::max(spins[i - first_], spins[i + 1 - first_]);
-    };
-    // What turns a rod ten times round in a step has not been solved: nothing lies between the step's ends,
-    // nor behind it.
-    double turned = 0;
-    for (std::size_t i = first_; i < last_; ++i)
-      if (turn(i) <= 20 * pi)
-        turned += turn(i);
-      else
-        last_ = i;
-    const double states = static_cast<double>(last_ - first_ + 1);
-    const auto stride = static_cast<std::size_t>(std::ceil(std::max(1.0, states / most)));
-    const double each = std::max(most_turn, turned / std::max(1.0, most - states));
-    for (std::size_t i = first_; i < last_; i += stride) {
-      const double t = trajectory_.time(i), h = trajectory_.time(i + 1) - t;
-      const int parts_of_step = stride > 1 ? 1 : static_cast<int>(std::ceil(std::max(1.0, turn(i) / each)));
-      for (int k = 0; k < parts_of_step; ++k) times_.push_back(t + h * k / parts_of_step);
-    }
-    times_.push_back(trajectory_.time(last_));
-  }
-
-  // Of the fastest rod [rad/s].
-  double spin(std::size_t i) const {
-    double fastest = 0;
-    const VectorXd v = trajectory_.node_velocities(i);
-    for (const Rod& rod : trajectory_.structure().rods)
-      fastest = std::max(fastest, (v.segment<3>(3 * rod.b) - v.segment<3>(3 * rod.a)).norm() / rod.length);
-    return fastest;
-  }
-
   // Half as low as the heights on both sides that part it from what is lower: what is not is rounding.
   bool stands_out(std::size_t k) const {
     const auto height = [&](auto first, auto last) {
@@ -320,13 +373,8 @@ class DipSearch {
     return values_[k] <= 0.5 * std::min(before, after);
   }
 
-  VectorXd pose(double t) const {
-    const std::size_t i = trajectory_.state_before(t);
-    return i < last_ && t > trajectory_.time(i) ? trajectory_.state_at(t).z
-                                                : trajectory_.state(std::min(i, last_)).z;
-  }
   double exact(std::size_t k) { return between(times_[k]); }
-  double between(double t) { return sigma_.at(pose(t)); }
+  double between(double t) { return sigma_.at(pose(trajectory_, last_, t)); }
 
   // Vertex of the parabola through sigma^2 at three times: exact where sigma = c |t - t*|, and where it turns
   // round at a distance, sigma^2 = c^2 (t - t*)^2 + d^2.
@@ -354,11 +402,48 @@ class DipSearch {
   }
 
   const Trajectory& trajectory_;
-  std::size_t first_, last_;
+  std::size_t last_;
+  std::vector<double> times_, values_, kept_;  // of the samples; kept_: of those that had a look in this pass
+  std::vector<double> ways_;                   // that the Jacobian moves from one of all samples to the next
   SmallestSingularValue sigma_;
-  std::vector<double> times_, values_;  // of the samples
-  std::vector<double> ways_;            // that the Jacobian moves from one of all samples to the next
+  double largest_ = 0, way_ = 0, least_ = no_limit;  // least_: that a sigma passed over may have
+  bool bad_ = false;
 };
+
+// In states [first, last] of one model, in each part of it.
+void find_dips(const Trajectory& trajectory, std::size_t first, std::size_t last, std::vector<Event>& events,
+               const std::function<bool()>& cancelled) {
+  const auto jacobian = std::make_shared<JacobianInPoses>(trajectory.model(first).system);
+  const std::size_t end = last;
+  const std::vector<double> times = sample_times(trajectory, first, last);
+  std::vector<std::unique_ptr<DipSearch>> searches, open;
+  for (const SparsePart& part : parts_with_rows(*jacobian)) {
+    if (std::max(std::ssize(part.rows()), std::ssize(part.columns())) > max_singular_size) continue;
+    const Index rank = usual_rank(
+        *jacobian, [&](const SparseRows& G) { return part.of(G); }, trajectory, first, end);
+    open.push_back(
+        std::make_unique<DipSearch>(trajectory, last, times, jacobian, part, std::ssize(part.rows()) - rank));
+    if (open.back()->all_zeros()) open.pop_back();
+  }
+  for (int pass = 0; pass < 3 && !open.empty(); ++pass) {
+    for (const auto& search : open) search->begin();
+    for (std::size_t k = 0; k < times.size() && !(cancelled && cancelled()); ++k) {
+      const VectorXd z = pose(trajectory, last, times[k]);
+      for (const auto& search : open) search->look(k, z, pass < 2);
+    }
+    const auto done =
+        std::stable_partition(open.begin(), open.end(), [](const auto& s) { return !s->end(); });
+    std::move(done, open.end(), std::back_inserter(searches));
+    open.erase(done, open.end());
+  }
+  std::vector<Event> found;
+  for (const auto& search : searches) search->find(found, cancelled);
+  std::ranges::stable_sort(found, {}, &Event::t);
+  // Parts that are alike and go alike come to one time.
+  const double alike = 0.01 * trajectory.options().step;
+  for (Event& event : found)
+    if (events.empty() || event.t > events.back().t + alike) events.push_back(std::move(event));
+}
 
 }  // namespace
 
@@ -371,10 +456,9 @@ std::vector<Event> find_singular_poses(const Trajectory& trajectory, const std::
                        &trajectory.model(last + 1) == &trajectory.model(first) &&
                        trajectory.time(last + 1) > trajectory.time(last);)
       ++last;
-    const Index size = std::max(system.constraints(), system.solved_coordinates());
-    if (last < first + 2 || system.constraints() == 0 || size > max_singular_size) continue;
+    if (last < first + 2 || system.constraints() == 0) continue;
     if (system.solved_coordinates() == 0) continue;  // nothing can move
-    DipSearch(trajectory, first, last).run(found, cancelled);
+    find_dips(trajectory, first, last, found, cancelled);
   }
   return found;
 }

@@ -2,20 +2,42 @@
 // Poses of a run in which a structure gains ways to move.
 #pragma once
 
+#include <memory>
+
 #include "core/math/interleaved.hpp"
 #include "core/math/saddle_solver.hpp"
+#include "core/math/sparse_part.hpp"
 #include "core/simulate/simulation.hpp"
 
 namespace unfurl {
+
+// A system's kept Jacobian, in poses that several look at in turn.
+class JacobianInPoses {
+ public:
+  explicit JacobianInPoses(const System& system)
+      : system_(system), G_(system.jacobian_pattern()), q_(system.coordinates()) {}
+  const System& system() const { return system_; }
+  const SparseRows& pattern() const { return G_; }
+  const SparseRows& at(const ConstVec& z);
+
+ private:
+  const System& system_;
+  SparseRows G_;
+  VectorXd z_, q_;
+  std::vector<double> scratch_;
+};
 
 // The smallest singular value sigma of a system's Jacobian G (rows of length 1, solved coordinates, kept
 // rows) that is not zero everywhere, followed from pose to pose: block inverse iteration with G G^T + e I or
 // G^T G + e I, whichever has fewer zeros, warm-started, then the singular values of G on the block
 // (Rayleigh-Ritz), which converge like the square of the block's error. `redundant`: how many rows depend on
-// others in every pose; their zeros are passed over. `count`: so many of the smallest are known.
+// others in every pose; their zeros are passed over. `count`: so many of the smallest are known. Of some
+// coordinates alone, where no row joins them to others: what is weak elsewhere, and stays so, would hide how
+// these come near a singular pose.
 class SmallestSingularValue {
  public:
-  SmallestSingularValue(const System& system, Index redundant, Index count = 1);
+  SmallestSingularValue(std::shared_ptr<JacobianInPoses> jacobian, SparsePart part, Index redundant,
+                        Index count = 1);
   // There is none: rods between fixed nodes alone. Nothing else may be asked then.
   bool all_zeros() const { return zeros_ >= block_.rows(); }
   double at(const ConstVec& z);  // NaN where the factorisation broke down
@@ -26,7 +48,8 @@ class SmallestSingularValue {
   // its entries: by Weyl's inequality no singular value has changed by more.
   double moved(const ConstVec& z);
   // What at() has found, by rising sigma: unit vectors u of the rows and v of the coordinates with
-  // G v = sigma u, and how long the rows were.
+  // G v = sigma u, and how long the rows were; of all rows and coordinates, 0 and 1 of those that are not
+  // looked at.
   struct Pair {
     double sigma;
     VectorXd u, v, lengths;
@@ -41,14 +64,15 @@ class SmallestSingularValue {
   void stir(Index column);
   void improve();  // one iteration
 
-  const System& system_;
-  bool by_rows_;  // the block lies in the space of the rows
-  Index zeros_;   // of the matrix that is iterated with, in every pose
+  std::shared_ptr<JacobianInPoses> whole_;
+  SparsePart part_;
+  std::vector<Index> from_;  // of each entry of G_, in the whole
+  bool by_rows_ = false;     // the block lies in the space of the rows
+  Index zeros_ = 0;          // of the matrix that is iterated with, in every pose
   Index count_;
   SparseRows G_;
-  std::vector<double> scratch_;
   SaddleSolver saddle_;
-  VectorXd z_, q_, sigma_;      // z_: the pose of G_
+  VectorXd z_, sigma_;          // z_: the pose of G_
   VectorXd lengths_;            // of its rows
   VectorXd seen_;               // entries of G_ at the pose that moved() saw last
   Interleaved rows_, columns_;  // the two parts of some of the saddle-point system's unknowns
@@ -56,7 +80,9 @@ class SmallestSingularValue {
 };
 
 // Of the kept Jacobian in a pose, rows of length 1.
-Index rank_at(const System& system, const ConstVec& z);
+Index rank_at(JacobianInPoses& jacobian, const SparsePart& part, const ConstVec& z);
+// Of a system those that neither rows nor masses join, and that have rows.
+std::vector<SparsePart> parts_with_rows(const JacobianInPoses& jacobian);
 
 // Rows of the kept Jacobian less its rank, the largest rank of a few states of [first, last]: a pose that is
 // singular for a moment does not count.

@@ -8,11 +8,12 @@
 
 #include "core/constraints/linear_rows.hpp"
 #include "core/integrators/index1.hpp"
-#include "core/math/saddle_solver.hpp"
+#include "core/math/lagrange.hpp"
 #include "core/simulate/driven_parts.hpp"
 #include "core/simulate/free_motion.hpp"
 #include "core/simulate/led_forces.hpp"
 #include "core/simulate/stepper_loop.hpp"
+#include "core/simulate/weak_rows.hpp"
 #include "core/structure/time_edges.hpp"
 
 namespace unfurl {
@@ -22,30 +23,19 @@ constexpr int before_it = 8, behind_it = 6, before_rest = 12;  // states on both
 constexpr double lost_rank = 1e-10;                            // the square of a singular value
 constexpr double agreed = 1e-8;                                // of the structure's size
 
-// How weakly rows hold a pose.
-class WeakRows {
- public:
-  explicit WeakRows(const System& system)
-      : system_(system), jacobian_(system.jacobian_pattern()), saddle_(system.mass(), jacobian_) {}
-  Index below(const State& state, double bound) { return factorise(state) ? saddle_.rows_below(bound) : 0; }
-  double pivot(const State& state, double bound) {
-    return factorise(state) ? saddle_.weakest_pivot(bound) : bound;
-  }
-
- private:
-  bool factorise(const State& state) {
-    q_.resize(system_.coordinates());
-    system_.expand(state.z, q_);
-    system_.jacobian(q_, jacobian_, scratch_);
-    return saddle_.factorise(jacobian_);
-  }
-
-  const System& system_;
-  SparseRows jacobian_;
-  SaddleSolver saddle_;
-  VectorXd q_;
-  std::vector<double> scratch_;
-};
+// Where the motion leads by then, roughly: the cubic through the last states, as a drive that comes to rest
+// there goes.
+State led_to(const Trajectory& run, double t, std::size_t first) {
+  constexpr std::size_t most = 4;
+  std::vector<State> last;
+  for (std::size_t i = run.size(); i-- > first && last.size() < most;)
+    if (last.empty() || run.time(i) < last.back().t) last.push_back(in_last_model(run, i));
+  State out = last.front();
+  out.z.setZero();
+  const auto time = [&](std::size_t k) { return last[k].t; };
+  for (std::size_t k = 0; k < last.size(); ++k) out.z += lagrange_weight(k, last.size(), t, time) * last[k].z;
+  return out;
+}
 
 // To times around t, none nearer than half of what they are `apart`, as far as they are clear of the start.
 std::vector<double> lengths_around(double t, double apart, double from, double until,
@@ -163,6 +153,7 @@ State Stepper::Loop::clear_of(double t, std::size_t first) const {
   std::size_t i = run_.trajectory.size() - 1;
   while (i > first && t - run_.trajectory.time(i) < 0.99 * step) --i;
   State state = in_last_model(run_.trajectory, i);
+  rows.count_falling(state, led_to(run_.trajectory, t, first));
   double pivot = rows.pivot(state, clear);
   while (i > first && pivot < clear && t - run_.trajectory.time(i) < longest) {
     State before = in_last_model(run_.trajectory, i - 1);
@@ -187,6 +178,7 @@ bool Stepper::Loop::ends_in_pose(const Probe& to) const {
   const double t = now().t + to.at;
   if (below == 0 || below <= rows.below(clear_of(t, led_since()), lost_rank)) return false;
   if (same_instant(t, next_prescribed_edge(run_.trajectory))) return true;
+  rows.count_falling(now(), to.state);
   const double left = std::sqrt(rows.pivot(to.state, clear)), before = std::sqrt(rows.pivot(now(), clear));
   return left * to.at <= soon * run_.options.step * (before - left);
 }
@@ -281,13 +273,14 @@ std::optional<AroundPose> Stepper::Loop::end_in_pose(Probe& to, double h, const 
 // So near a flat pose in which drives come to rest for good steps are of rounding: it is gone there at once.
 bool Stepper::Loop::goes_flat(Probe& to, double& h) {
   constexpr double soon = 1e-2;   // of the structure's size, of a drive's row
-  constexpr double still = 1e-9;  // [m], of a drive's row in a step
+  constexpr double still = 1e-9;  // of a drive's row's length, in a step
   constexpr double near = stepping::singular_margin * stepping::singular_margin, flat = 1e-13;
   const double edge = system().drives().empty() ? until_ : grid_.next_edge(now().t);
   const bool slows = std::ranges::any_of(system().drives(), [&](const Drive& drive) {
     const double left = drive.scale * std::abs(drive.target(edge) - drive.target(now().t));
     return 0 < left && left < soon * reference_length(base_->structure) &&
-           drive.scale * std::abs(drive.target.derivative(1, edge)) * run_.options.step <= still;
+           drive.scale * std::abs(drive.target.derivative(1, edge)) * run_.options.step <=
+               still * system().constraint_lengths()[drive.row];
   });
   if (!slows || edge > until_ || in_pose(now().t)) return false;
   const double end = grid_.next(now().t, 2 * (edge - now().t)).t;

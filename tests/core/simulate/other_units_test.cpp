@@ -34,6 +34,34 @@ TEST_CASE("every scene of the library moves alike in other units, to the last bi
   }
 }
 
+// The drive has its full rate, which is low, as it passes the flat pose: of a millimetre, 5e-10 m in a step.
+TEST_CASE("a drive passes a flat pose in structures of any size alike, to the last bit") {
+  const Scene scene = read_scene_text(R"toml([structure]
+kind = "custom"
+nodes = [{name = "A0", position = [0, 0, 0], fixed = true}, {name = "B0", position = ["=cos(pi/1000)", 0, "=-sin(pi/1000)"]},
+  {name = "A1", position = [2, 0, 0], fixed = true}, {name = "B1", position = ["=2+cos(pi/1000)", 0, "=-sin(pi/1000)"]}]
+rods = [{nodes = ["A0", "B0"], mass = 1}, {nodes = ["B0", "B1"], mass = 1}, {nodes = ["A1", "B1"], mass = 1}]
+[[constraints]]
+kind = "plane"
+nodes = ["B*"]
+normal = [0, 1, 0]
+[[constraints]]
+kind = "angle"
+name = "m"
+nodes = ["A1", "A0", "B0"]
+axis = [0, -1, 0]
+motion = "rate"
+rate = 0.36
+ramp = 1
+[solver]
+stages = 4
+step = 0.01
+end_time = 1.2
+)toml",
+                                      "s.toml");
+  for (const OtherUnits& units : all_units) check_other_units(scene, units);
+}
+
 TEST_CASE("every method moves alike in other units, to the last bit") {
   for (const Method& method : methods())
     for (const char* name : {"double_pendulum", "hoop6_sector"}) {
