@@ -192,6 +192,7 @@ bool fill(const StressPlan& plan, Site& site, Journal& journal, std::mutex& mute
     const std::lock_guard lock(mutex);
     return journal.find(key) != nullptr;
   };
+  const std::string piece = site.extreme->name + "-" + exact_number(site.value);
   for (const Setting& setting : plan.settings)
     for (const long steps : plan.steps) {
       const auto key = key_of(site, setting, steps);
@@ -200,11 +201,14 @@ bool fill(const StressPlan& plan, Site& site, Journal& journal, std::mutex& mute
         const std::lock_guard lock(mutex);
         journal.take_in(hooks.team->journals_of_others());
       };
-      if (hooks.team && !hooks.team->takes(site.extreme->name + "-" + exact_number(site.value), look_again))
-        return false;
+      if (hooks.team && hooks.team->finished(piece)) return true;
+      if (hooks.team && !hooks.team->takes(piece, look_again)) return false;
       if (known(key)) continue;
       if (!site.model) prepare(site, static_cast<int>(plan.steps.front()), hooks);
-      if (!site.reference) return true;
+      if (!site.reference) {
+        if (hooks.team) hooks.team->finish(piece);  // no row tells the others so
+        return true;
+      }
       if (hooks.stopped()) throw Cancelled();
       StressCell cell{key[0], site.value, setting.name, steps, {}, {}};
       cell.run = measure_run(site.model, setting.options, steps, *site.reference, once, hooks);

@@ -176,4 +176,39 @@ TEST_CASE("the sites of an atlas that another worker is at are left to it, and t
   CHECK(in_file.size() == 2);  // theirs came from their file
 }
 
+// What rubs from the start has no reference at any size of its forces, and so no row: two workers that hold a
+// site each waited for one another as long as they lived.
+TEST_CASE("sites of an atlas that have no reference are done for all workers") {
+  const Folder scratch;
+  const auto text = std::make_shared<const std::string>(R"(
+[structure]
+kind = "pendulum"
+angle = 90.0
+[gravity]
+acceleration = [0, 0, -9.81]
+[[forces]]
+kind = "friction"
+nodes = ["bob"]
+direction = [0, 0, 1]
+kinetic = 0.1
+)");
+  StressPlan plan = plan_stress({"one.toml", {}, text, "."}, {"force"});
+  plan.settings.resize(1);
+  plan.steps = {16};
+  Team one(scratch.path / "join", 60), two(scratch.path / "join", 60);
+  const auto done = [&](Team& team, std::vector<double> values) {
+    plan.extremes[0].values = std::move(values);
+    Journal journal(team.journal(), stress_columns(), stress_key_columns);
+    StudyHooks hooks;
+    hooks.team = &team;
+    const Stress found = run_stress(plan, journal, hooks);
+    CHECK(found.cells.empty());
+    return found.complete;
+  };
+  CHECK(done(one, {1}));
+  CHECK(done(two, {10}));
+  CHECK(done(one, {1, 10}));
+  CHECK(done(two, {1, 10}));
+}
+
 }  // namespace team_test
