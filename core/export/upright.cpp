@@ -4,7 +4,8 @@
 namespace unfurl {
 
 Eigen::Quaterniond shortest_turn(const Vec3& from, const Vec3& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to);
+  // Next to opposite directions its length is off by 5e-6, and lengths turned by it by twice that.
+  return Eigen::Quaterniond::FromTwoVectors(from, to).normalized();
 }
 
 Mat3 upright_rotation(const Vec3& gravity) {
