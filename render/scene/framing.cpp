@@ -180,7 +180,11 @@ double fitting_aspect(const PointSource& points, const ViewAngles& view, const F
 }
 
 double centered_distance(const PointSource& points, const Vec3& center, const ViewAngles& view,
-                         const Framing& f) {
+                         const Framing& framing) {
+  // Both sides of the middle are as near as the larger margin, and half of the picture would leave none of
+  // it.
+  Framing f = framing;
+  f.margins.bottom = std::min(f.margins.bottom, 0.4);
   const Sight sight(points, view, f);
   const double x = sight.right.dot(center), y = sight.up.dot(center);
   if (f.parallel) {

@@ -7,6 +7,7 @@
 #include "core/scene/library.hpp"
 #include "core/scene/reader.hpp"
 #include "render/plot/text_metrics.hpp"
+#include "render/scene/camera_path.hpp"
 #include "render/scene/film_style.hpp"
 #include "render/scene/view.hpp"
 
@@ -84,6 +85,29 @@ render.inset = 'kinetic_energy_J'
     const Inset& in = list.inset;
     CHECK(deepest(list, width, height, in.x, in.y, in.x + in.width, in.y + in.height) == 0);
   }
+}
+
+// The line of the time takes half of such a picture and more. A camera that turns around the middle of it had
+// nothing left and stood at no place at all: the film showed nothing or, with dimension lines, ended the
+// program.
+TEST_CASE("the smallest pictures show all of a structure to every camera") {
+  for (const char* camera :
+       {"render.turntable=1", "render.orbit=90", "render.follow=true", "render.projection='orthographic'"})
+    for (const auto& [width, height] : {std::pair{64, 48}, {200, 32}, {16, 16}, {32, 200}}) {
+      INFO(camera << " " << width << " x " << height);
+      const Film film("pendulum", {"solver.end_time=0.3", "render.dimensions=true", camera});
+      const FrameBuilder builder(film.run.trajectory, film.style(width, height));
+      for (const Shot& shot : film_shots(film.run.trajectory, film.scene.render)) {
+        const DrawList list = builder.build(shot);
+        REQUIRE_FALSE(list.tubes.empty());
+        for (const Tube& tube : list.tubes)
+          for (const Vec3f& end : {tube.a, tube.b}) {
+            const Vec3f p = project(list.camera, width, height, end);
+            const Eigen::Array2f at = p.head<2>(), size(width, height);
+            REQUIRE((at >= 0 && at <= size).all());
+          }
+      }
+    }
 }
 
 TEST_CASE("a scale bar stands below the structure, in panels of posters too, which are all of one scale") {
