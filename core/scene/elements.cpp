@@ -66,6 +66,8 @@ void check_motion(TableReader& entry, const ParamSet& values, bool has_table) {
   };
   if (motion == "rate") needs("rate", entry.has("rate"));
   if (motion == "smooth") needs("to", entry.has("to"));
+  if (motion == "sine")
+    for (const char* key : {"amplitude", "frequency"}) needs(key, entry.has(key));
   if (motion == "table") needs("times", has_table || !values.vector("times").empty());
 }
 

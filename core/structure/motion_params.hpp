@@ -10,8 +10,8 @@
 
 namespace unfurl {
 
-// motion = hold, rate, smooth or table with what each needs; `unit` is that of the value: "m", "deg" or "",
-// where it depends on what moves. `before`: further choices, the first of them the default.
+// motion = hold, rate, smooth, sine or table with what each needs; `unit` is that of the value: "m", "deg" or
+// "", where it depends on what moves. `before`: further choices, the first of them the default.
 std::vector<ParamSpec> motion_params(std::string_view unit, std::vector<std::string_view> before = {});
 
 // From `initial` on, in SI units; `unit` is the scene's in those. Any other motion than those above is none.

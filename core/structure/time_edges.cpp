@@ -66,11 +66,16 @@ void add_edges(const TimeFunction& f, double step, std::vector<TimeEdge>& edges)
   switch (f.kind) {
     case TimeFunction::Kind::constant:
     case TimeFunction::Kind::piece:
+    case TimeFunction::Kind::wave:
       return;
     case TimeFunction::Kind::rate:
-      edges.push_back({f.start, f.ramp == 0 && f.rate != 0, f.ramp == 0 && f.rate != 0});
+    case TimeFunction::Kind::sine: {
+      const bool sets_out =
+          f.ramp == 0 && (f.rate != 0 || (f.kind == TimeFunction::Kind::sine && f.rise != 0));
+      edges.push_back({f.start, sets_out, sets_out});
       if (f.ramp > 0) edges.push_back({f.start + f.ramp, false});
       return;
+    }
     case TimeFunction::Kind::smooth:
       edges.push_back({f.start, false});
       // Between two states at rest there would be nothing to see of it.

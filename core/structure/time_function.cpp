@@ -2,6 +2,7 @@
 #include "core/structure/time_function.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -27,11 +28,40 @@ double rate_part(const TimeFunction& f, int order, double t) {
   return order == 1 ? f.rate * (3 * u * u - 2 * u * u * u) : f.rate / f.ramp * (6 * u - 6 * u * u);
 }
 
+// 10 u^3 - 15 u^4 + 6 u^5 and its derivatives by u.
+double smooth_rise(int order, double u) {
+  const double v = 1 - u;
+  if (order == 0) return u * u * u * (10 + u * (-15 + 6 * u));
+  return order == 1 ? 30 * u * u * v * v : 60 * u * v * (v - u);
+}
+
 double smooth_part(const TimeFunction& f, int order, double t) {
-  const double u = share_over(f.start, f.duration, t), v = 1 - u;
-  if (order == 0) return f.rise * u * u * u * (10 + u * (-15 + 6 * u));
-  if (order == 1) return f.rise / f.duration * 30 * u * u * v * v;
-  return f.rise / (f.duration * f.duration) * 60 * u * v * (v - u);
+  const double part = smooth_rise(order, share_over(f.start, f.duration, t));
+  return f.rise * part / std::pow(f.duration, order);
+}
+
+// Whole waves are left out first: however many there were, their ends are where they began.
+double waves(const TimeFunction& f, int order, double t) {
+  const double w = 2 * pi / f.duration, turn = 2 * pi * std::remainder((t - f.start) / f.duration, 1.0);
+  const double half = std::sin(0.5 * turn);
+  if (order == 0) return f.rate / w * std::sin(turn) + f.rise * half * half;
+  if (order == 1) return f.rate * std::cos(turn) + 0.5 * f.rise * w * std::sin(turn);
+  return w * (0.5 * f.rise * w * std::cos(turn) - f.rate * std::sin(turn));
+}
+
+// (size waves)', (size waves)'' of size, size', size''.
+double sized_waves(const TimeFunction& f, int order, double t, const std::array<double, 3>& size) {
+  double sum = size[0] * waves(f, order, t);
+  if (order > 0) sum += order * size[1] * waves(f, order - 1, t);
+  return order == 2 ? sum + size[2] * waves(f, 0, t) : sum;
+}
+
+double sine_part(const TimeFunction& f, int order, double t) {
+  if (t < f.start) return 0.0;
+  const double u = f.ramp > 0 ? share_over(f.start, f.ramp, t) : 1.0;
+  if (u == 1) return waves(f, order, t);
+  return sized_waves(f, order, t,
+                     {smooth_rise(0, u), smooth_rise(1, u) / f.ramp, smooth_rise(2, u) / (f.ramp * f.ramp)});
 }
 
 // The interval of t; before the first and behind the last point the nearest one.
@@ -83,10 +113,11 @@ std::vector<double> rate_piece(const TimeFunction& f, double t) {
   return {-0.5 * f.rate * ramp, f.rate};
 }
 
-std::vector<double> smooth_piece(const TimeFunction& f, double t) {
+// From 0 to `rise` within d from the start on.
+std::vector<double> rise_piece(const TimeFunction& f, double rise, double d, double t) {
   if (t < f.start) return {};
-  if (!(t < f.start + f.duration)) return {f.rise};
-  const double d = f.duration, third = f.rise / (d * d * d);
+  if (!(t < f.start + d)) return {rise};
+  const double third = rise / (d * d * d);
   return {0, 0, 0, 10 * third, -15 * third / d, 6 * third / (d * d)};
 }
 
@@ -108,11 +139,27 @@ std::vector<double> piece_of_table(TimeFunction& f, double t) {
 TimeFunction TimeFunction::piece_at(double t) const {
   t += 4 * std::numeric_limits<double>::epsilon() * std::abs(t);  // behind what rounding puts there
   TimeFunction f = *this;
-  f.values = kind == Kind::rate               ? rate_piece(f, t)
-             : kind == Kind::smooth           ? smooth_piece(f, t)
-             : moves() && kind != Kind::piece ? piece_of_table(f, t)
-                                              : values;
-  if (moves()) f.kind = Kind::piece;
+  f.kind = Kind::piece;
+  switch (kind) {
+    case Kind::constant:
+    case Kind::piece:
+    case Kind::wave:
+      return *this;
+    case Kind::rate:
+      f.values = rate_piece(f, t);
+      break;
+    case Kind::smooth:
+      f.values = rise_piece(f, rise, duration, t);
+      break;
+    case Kind::sine:
+      f.values = rise_piece(f, 1.0, ramp, t);
+      f.kind = Kind::wave;
+      break;
+    case Kind::spline:
+    case Kind::linear:
+      f.values = piece_of_table(f, t);
+      break;
+  }
   return f;
 }
 
@@ -131,14 +178,23 @@ double TimeFunction::derivative(int order, double t) const {
       return base + linear_part(*this, order, t);
     case Kind::piece:
       return base + polynomial(values, order, t - start);
+    case Kind::sine:
+      return base + sine_part(*this, order, t);
+    case Kind::wave: {
+      const double s = t - start;
+      return base +
+             sized_waves(*this, order, t,
+                         {polynomial(values, 0, s), polynomial(values, 1, s), polynomial(values, 2, s)});
+    }
   }
   return base;
 }
 
 bool make_jumps(TimeFunction& f, double near) {
-  if (f.kind == TimeFunction::Kind::rate && (f.start + f.ramp) - f.start < near) {
+  const bool rate = f.kind == TimeFunction::Kind::rate;
+  if ((rate || f.kind == TimeFunction::Kind::sine) && (f.start + f.ramp) - f.start < near) {
     constexpr double at_once = 0.01;  // of that: no step ends between the start and that time
-    f.start += 0.5 * f.ramp;
+    if (rate) f.start += 0.5 * f.ramp;
     f.ramp = 0;
     if (std::abs(f.start) <= at_once * near) f.start = 0;
   }

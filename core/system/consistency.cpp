@@ -58,6 +58,7 @@ VectorXd unit_rates(const System& system, double t, const VectorXd& q, const Vec
 bool changes(const TimeFunction& f) {
   if (f.kind == TimeFunction::Kind::spline || f.kind == TimeFunction::Kind::linear)
     return std::ranges::any_of(f.values, [&](double x) { return x != f.values[0]; });
+  if (f.kind == TimeFunction::Kind::sine) return f.rate != 0 || f.rise != 0;
   return f.kind == TimeFunction::Kind::rate ? f.rate != 0 : f.moves() && f.rise != 0;
 }
 

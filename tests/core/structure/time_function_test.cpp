@@ -2,9 +2,11 @@
 // Functions over time: their derivatives, and what tables of motion are at and beyond their ends.
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <vector>
 
 #include "core/math/lagrange.hpp"
+#include "core/math/types.hpp"
 #include "core/structure/time_function.hpp"
 
 using namespace unfurl;
@@ -69,6 +71,76 @@ TEST_CASE("a piece of a function over time goes on before and behind it") {
         CHECK(piece(t) == Approx(told).epsilon(1e-9).margin(1e-9));
       }
     }
+}
+
+namespace {
+
+// A (sin(w s + phase) - sin(phase)) by what it does at the start and half a wave later.
+TimeFunction sine_of(double A, double frequency, double phase, double start, double ramp) {
+  TimeFunction f;
+  f.kind = TimeFunction::Kind::sine, f.offset = 0.3, f.start = start, f.ramp = ramp;
+  f.duration = 1 / frequency, f.rate = A * 2 * pi * frequency * std::cos(phase),
+  f.rise = -2 * A * std::sin(phase);
+  return f;
+}
+
+Approx near(double x) {
+  return Approx(x).epsilon(0).margin(1e-12);
+}
+
+}  // namespace
+
+// The closed form itself; what rounds is 1e-16 of the terms of each derivative, of A w^2 = 70 at most, times
+// a phase w t of 60.
+TEST_CASE("a sine is what it says with and without a ramp") {
+  const double A = 0.2, w = 2 * pi * 3, start = 0.2, ramp = 0.7;
+  for (const double phase : {0.0, 0.4, 0.5 * pi, 3.0, -1.1}) {
+    const TimeFunction at_once = sine_of(A, 3, phase, start, 0.0), f = sine_of(A, 3, phase, start, ramp);
+    for (const double t : {0.0, 0.1999, 0.2001, 0.31, 0.77, 0.8999, 0.9001, 1.7, 3.3}) {
+      const double s = t - start, u = std::min(s / ramp, 1.0), v = 1 - u;
+      const double g = A * (std::sin(w * s + phase) - std::sin(phase)), dg = A * w * std::cos(w * s + phase),
+                   ddg = -A * w * w * std::sin(w * s + phase);
+      const double e = u * u * u * (10 - 15 * u + 6 * u * u), de = 30 * u * u * v * v / ramp,
+                   dde = 60 * u * v * (v - u) / (ramp * ramp);
+      const auto there = [s](double x) { return s < 0 ? 0.0 : x; };
+      CHECK(at_once(t) == near(0.3 + there(g)));
+      CHECK(at_once.derivative(1, t) == near(there(dg)));
+      CHECK(at_once.derivative(2, t) == near(there(ddg)));
+      CHECK(f(t) == near(0.3 + there(e * g)));
+      CHECK(f.derivative(1, t) == near(there(de * g + e * dg)));
+      CHECK(f.derivative(2, t) == near(there(dde * g + 2 * de * dg + e * ddg)));
+    }
+    // Twice continuously differentiable where the ramp begins and ends: the third derivative is below A w^3
+    // + 60 A / ramp^3, of order 1e3, over 1e-9 s.
+    for (const double edge : {start, start + ramp})
+      for (const int order : {0, 1, 2})
+        CHECK(f.derivative(order, edge - 5e-10) ==
+              Approx(f.derivative(order, edge + 5e-10)).epsilon(0).margin(1e-5));
+  }
+}
+
+// A piece goes on as it is: before the start as waves do, in a ramp as its polynomial.
+TEST_CASE("a piece of a sine is a sine at all times") {
+  const TimeFunction f = sine_of(0.2, 3, 0.4, 0.2, 0.7), waves = f.piece_at(0.9);
+  for (const double t : {-1.0, 0.1, 0.5, 4.0}) {
+    CHECK(waves(t) == near(0.3 + 0.2 * (std::sin(6 * pi * (t - 0.2) + 0.4) - std::sin(0.4))));
+    CHECK(f.piece_at(0.1)(t) == 0.3);
+    for (const int order : {0, 1, 2})
+      CHECK(waves.piece_at(7).derivative(order, t) == waves.derivative(order, t));
+  }
+  for (const double t : {0.21, 0.5, 0.89})
+    for (const int order : {0, 1, 2})
+      CHECK(f.piece_at(0.2).derivative(order, t) == near(f.derivative(order, t)));
+  check_derivatives(waves, {-1.0, 0.1, 0.5, 4.0});
+  check_derivatives(f.piece_at(0.2), {0.1, 0.5, 1.0});
+}
+
+// Of a million waves none is lost: a phase of 6e6 rounds to 1e-9, whole waves to nothing but the time's own.
+TEST_CASE("whole waves of a sine end where they began") {
+  const TimeFunction f = sine_of(0.2, 4, 0.3, 0.5, 0.0);
+  for (const double waves : {1.0, 7.0, 1000000.0}) CHECK(f(0.5 + waves / 4) == 0.3);
+  const TimeFunction rests = sine_of(0.2, 4, 0.5 * pi, 0.5, 0.0);
+  CHECK(rests(0.5 + 0.125) == Approx(0.3 - 0.4).epsilon(1e-15));
 }
 
 TEST_CASE("a table of motion begins and ends at rest, and holds its last value") {
