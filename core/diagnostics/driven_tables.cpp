@@ -27,11 +27,21 @@ bool is_followed(const TimeFunction& f, double from, double to) {
   return std::abs(way) <= enough * h * fastest && std::abs(gain) <= enough * fastest * fastest;
 }
 
+// Points that cut a sine into parts that three Gauss points do tell; where a step spans so many waves that it
+// cannot follow them, none.
+void add_parts_of_waves(const TimeFunction& f, double from, double to, std::vector<double>& out) {
+  constexpr double parts = 8, most_waves = 4;
+  if (to - from > most_waves * f.duration) return;
+  const double length = f.duration / parts;
+  for (double k = std::max(0.0, std::floor((from - f.start) / length)); f.start + k * length < to; ++k)
+    if (f.start + k * length > from) out.push_back(f.start + k * length);
+}
+
 }  // namespace
 
 DrivenTables::DrivenTables(const Structure& structure) {
   const auto add = [&](const std::string& name, const TimeFunction& f) {
-    if (f.kind == TimeFunction::Kind::spline &&
+    if ((f.kind == TimeFunction::Kind::spline || f.kind == TimeFunction::Kind::sine) &&
         std::ranges::none_of(tables_, [&](const Table& table) { return table.f == f; }))
       tables_.push_back({name, f});
   };
@@ -45,6 +55,10 @@ DrivenTables::DrivenTables(const Structure& structure) {
 std::vector<double> DrivenTables::points_within(double from, double to) const {
   std::vector<double> out;
   for (const Table& table : tables_) {
+    if (table.f.kind == TimeFunction::Kind::sine) {
+      if (!is_followed(table.f, from, to)) add_parts_of_waves(table.f, from, to, out);
+      continue;
+    }
     const std::vector<double>& times = table.f.times;
     const auto first = std::upper_bound(times.begin(), times.end(), from),
                last = std::lower_bound(first, times.end(), to);
@@ -53,6 +67,10 @@ std::vector<double> DrivenTables::points_within(double from, double to) const {
   std::ranges::sort(out);
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
+}
+
+bool DrivenTables::only_sines() const {
+  return std::ranges::all_of(tables_, [](const Table& t) { return t.f.kind == TimeFunction::Kind::sine; });
 }
 
 std::string DrivenTables::words(double step) const {

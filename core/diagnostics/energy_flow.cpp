@@ -302,10 +302,13 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b, bool sin
   dissipated += by_friction + by_rods;
   const double fastest = dampers_ ? damping_bound(a) : 0.0;
   const bool stiff = h * fastest > stiff_at;
-  const std::vector<double> points_inside = drives_ ? tables_.points_within(a.t, b.t) : std::vector<double>();
+  const bool smooth = tables_.only_sines();  // at all times: what a step has found at its own points tells it
+  const std::vector<double> points_inside =
+      drives_ && !(smooth && by_step) ? tables_.points_within(a.t, b.t) : std::vector<double>();
   const bool split = !points_inside.empty();
   const Ends trusted = stiff ? trusted_ends(a, b) : Ends{};
-  if (split || by_step)  // accelerations of single points of a table, or of waves, tell no motion of a step
+  // Accelerations of single points of a table, or of waves of rods, tell no motion of a step.
+  if ((split && !smooth) || by_step)
     std::tie(by_a_, by_b_) = cubic_ends(a, b);
   else if (!stiff)
     smooth_ends(a, b);
@@ -328,12 +331,13 @@ void EnergyMeter::add(const State& a, const State& b, SolvedPoint at_b, bool sin
   for (Index i = 0; i < rule.nodes.size(); ++i) {
     const double u = rule.nodes[i], t = a.t + u * h, weight = h * rule.weights[i];
     const bool at_end = by_ends && (i == 0 || i + 1 == rule.nodes.size());
-    const VectorXd z = motion.value(u);
+    VectorXd z = motion.value(u);
     VectorXd w = motion.rate(u);
     if (points > 0) tension = split ? between_stages(b, u) : VectorXd(b.stage_tension.col(i));
     if (by_step) lambda_ = tension.tail(lambda_.size()), tension.conservativeResize(giving);
     if (at_end) lambda_ = i == 0 ? before_.lambda : after_.lambda;
     if (in_pose) lambda_ = (1 - u) * bounded(a.lambda) + u * bounded(b.lambda);
+    if (split && smooth) index1_->move_onto(t, z, tension);
     const bool known = drives_ && (at_end || by_step || in_pose ||
                                    (split ? index1_->evaluate_on(t, z, w, unused_, lambda_, tension)
                                           : index1_->evaluate(t, z, w, unused_, lambda_, tension)));

@@ -72,6 +72,15 @@ bool Index1::evaluate_on(double t, const ConstVec& z, VectorXd& w, MutVec accele
   return solve(t, w, acceleration, lambda);
 }
 
+void Index1::move_onto(double t, VectorXd& z, const VectorXd& tension) {
+  VectorXd move = VectorXd::Zero(z.size()), lambda(phi_.size());
+  if (!assemble(t, z, move, tension)) return;
+  system_.constraint(t, q_, phi_);
+  phi_ = -phi_;
+  settle(VectorXd::Zero(z.size()), phi_, move, lambda);
+  if (move.allFinite()) z += move;
+}
+
 double Index1::out_of_reach(double weak) {
   return weak > 0 && saddle_.weakest_pivot(weak) < weak ? std::numeric_limits<double>::infinity() : left_;
 }

@@ -15,6 +15,7 @@
 #include "core/simulate/one_sided.hpp"
 #include "core/simulate/push_responses.hpp"
 #include "core/simulate/step_control.hpp"
+#include "core/structure/prescribed_waves.hpp"
 
 namespace unfurl {
 namespace {
@@ -23,6 +24,12 @@ constexpr int most_directions = 60;
 constexpr double settled_share = 1e-3;   // of w^2, what is left of the fastest one's equation
 constexpr double known_share = 0.05;     // the same of the others that count
 constexpr double followed_share = 0.25;  // of a period: steps up to that follow it
+
+// In the three digits that are said of it, and no longer than it is: who takes that step is not warned again.
+double said(double step) {
+  const double unit = std::pow(10.0, std::floor(std::log10(step)) - 2);
+  return std::floor(step / unit) * unit;
+}
 
 bool bends(const Structure& structure) {
   return std::ranges::any_of(structure.forces, [](const Force& f) { return f.kind == "bending"; });
@@ -62,7 +69,7 @@ std::string spring_step_warning(double period, const SolverOptions& options) {
       << "the step of " << options.step << " s does not resolve the fastest swing on springs, " << period
       << " s: where in it the structure is at a time, and what these springs pull with, is not to be "
          "trusted; to follow it, solver.step = "
-      << followed
+      << said(followed)
       << "; to let it die out, damping of the spring or solver.method = \"generalized_alpha\" with rho_inf < "
          "1";
   return text.str();
@@ -218,7 +225,7 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
        << " s: such waves are not followed, and forces at single states are theirs (axial_force_unique "
           "= 0 where by more than 1 %); dvm stops those whose period is less than a sixteenth of the step. "
           "To follow them, solver.step = "
-       << followed_share * period
+       << said(followed_share * period)
        << (options.step > period && options.stages < 4
                ? "; with fewer than four stages they spoil velocities, and forces of all rods that dvm does "
                  "not stop: solver.stages = 4"
@@ -227,6 +234,19 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
           "them out, structure.rod_model = \"quasi-static\""
        << (model.structure.kind == "custom" ? ", with elastic = true of no rod" : "");
   if (!springs.empty()) text << "; " << springs;
+  return text.str();
+}
+
+std::string wave_step_warning(const Structure& structure, const SolverOptions& options) {
+  const PrescribedWave wave = fastest_wave(structure, options.end_time);
+  const double followed = wave.period * swing_share_of(options),
+               longest = options.adaptive ? options.turn * wave.period / (2 * pi) : options.step;
+  if (!(std::min(longest, options.step) > followed)) return {};
+  std::ostringstream text;
+  text.precision(3);
+  text << "the step of " << options.step << " s does not resolve the sine of " << wave.name << ", "
+       << wave.period << " s a wave: motions and forces are not to be trusted; to follow it, solver.step = "
+       << said(followed);
   return text.str();
 }
 
@@ -259,7 +279,7 @@ std::string cable_step_warning(const OneSided& sides, std::size_t i, const Syste
       << options.step
       << " s does not resolve: how far it stretches, how long it pulls and what it throws back are not to be "
          "trusted; solver.step = "
-      << followed << ", or solver.model = \"auto\" where the structure moves in one way only";
+      << said(followed) << ", or solver.model = \"auto\" where the structure moves in one way only";
   return text.str();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fastest waves of rods that give and swings on springs, and whether a step follows them.
+// The fastest waves of rods that give, swings on springs and sines, and whether a step follows them.
 #pragma once
 
 #include <string>
@@ -25,6 +25,9 @@ double swing_share_of(const SolverOptions& options);
 // they go by at the start or went by behind it, `swing` [1/s] as of Stepper.
 std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options,
                                  double swing = 0);
+
+// The same of the fastest sine that the structure prescribes.
+std::string wave_step_warning(const Structure& structure, const SolverOptions& options);
 
 // The same of cable i, which begins to pull: of how what it holds back swings on it. More stages of dvm
 // follow in a longer step what fewer would not.

@@ -80,7 +80,7 @@ std::vector<std::string> warnings_of_start(const Model& model, const InitialStat
   std::vector<std::string> warnings = model.structure.notes;
   std::vector<std::string> said{velocity_warning(start, model.structure),
                                 elastic_step_warning(model, start.state, options, swing),
-                                drift_warning(model, options)};
+                                wave_step_warning(model.structure, options), drift_warning(model, options)};
   if (model.structure.kind == "custom")
     said.push_back(misfit_warning(model.system, node_positions(model.structure)));
   for (std::string& warning : said)

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/constraints/linear_rows.hpp"
+#include "core/structure/prescribed_waves.hpp"
 
 namespace unfurl {
 namespace {
@@ -99,7 +100,7 @@ double StepControl::density(const State& state) {
     system_.expand_rate(acceleration_, a_);
   else
     a_.setZero();
-  double omega = 0, change = 0;
+  double omega = 2 * pi / fastest_wave(structure_, state.t).period, change = 0;
   swing_ = {};
   for (const Rod& rod : structure_.rods) {
     const auto of = [&](const VectorXd& x) -> Vec3 {

@@ -15,8 +15,8 @@ namespace unfurl {
 // v h + b h^2 / 2 = alpha for h = alpha / omega, v = |v_b - v_a| / l and b = |e x (a_b - a_a)| / l of a rod
 // along e, and the frequency of what the motion stretches, (w . K w / w . M w)^1/2 of forces F(z), K = -dF/dz
 // (of w' h_0 as well, where it is at rest), where a swing is more than a millionth of the structure and
-// nothing is driven; and r = |w'| / (|w| + |w'| / r_0) in the mass norm, which a motion from rest keeps below
-// r_0.
+// nothing is driven; that of the fastest sine that something follows; and r = |w'| / (|w| + |w'| / r_0) in
+// the mass norm, which a motion from rest keeps below r_0.
 //
 //     Q(z, w) = sqrt(1 + (h_0 (omega + r) / alpha)^2),     h_{n-1/2} h_{n+1/2} = (h_0 / Q(z_n, w_n))^2
 //
