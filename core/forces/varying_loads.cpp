@@ -2,6 +2,7 @@
 #include "core/forces/varying_loads.hpp"
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace unfurl {
@@ -91,8 +92,32 @@ ParamSpec table_param() {
   return text_param("table", "", "CSV file beside the scene, in place of times and values: t,value");
 }
 
-// `size` times the factor over time, which is 1 where no table is given.
+// What stands in place of a table, for all loads over time.
+std::vector<ParamSpec> with_sine(std::vector<ParamSpec> params) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  params.push_back(
+      positive_param("frequency", "Hz", std::numeric_limits<double>::quiet_NaN(),
+                     "in place of times and values: the load goes as sin(360 deg frequency (t - start))"));
+  params.push_back(only_given(
+      "frequency", real_param("start", "s", 0.0, 0.0, infinity, "of the sine: before it there is no load")));
+  params.push_back(only_given("frequency", real_param("ramp", "s", 0.0, 0.0, infinity,
+                                                      "of the sine: how long it takes to grow to its size")));
+  return params;
+}
+
+TimeFunction sine_load(const ParamSet& values, double size) {
+  TimeFunction f;
+  f.kind = TimeFunction::Kind::sine;
+  f.duration = 1 / values.real("frequency");
+  f.rate = size * 2 * pi / f.duration;
+  f.start = values.real("start");
+  f.ramp = values.real("ramp");
+  return f;
+}
+
+// `size` times the factor over time, which is 1 where neither a table nor a frequency is given.
 TimeFunction over_time(const ParamSet& values, double size) {
+  if (std::isfinite(values.real("frequency"))) return sine_load(values, size);
   TimeFunction f;
   f.offset = size;
   if (values.vector("times").empty()) return f;
@@ -119,9 +144,9 @@ std::unique_ptr<ForceBlock> follower_block(const Structure& structure, const Spa
 }
 
 const std::vector<ParamSpec>& load_over_time_params() {
-  static const std::vector<ParamSpec> params = {
-      required(vector_param("force", "N", {0, 0, 0}, "on each node, times the factor of the time")),
-      times_param(), values_param(), table_param()};
+  static const std::vector<ParamSpec> params = with_sine(
+      {required(vector_param("force", "N", {0, 0, 0}, "on each node, times the factor of the time")),
+       times_param(), values_param(), table_param()});
   return params;
 }
 
@@ -138,10 +163,10 @@ void fill_follower(const ParamSet& values, Force& force) {
 const std::vector<ParamSpec>& follower_params() {
   static const std::vector<ParamSpec> params = [] {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    return std::vector<ParamSpec>{
-        required(real_param("force", "N", 0.0, -infinity, infinity,
-                            "on the second node of the rod, along the rod and away from the first")),
-        times_param(), values_param(), table_param()};
+    return with_sine(
+        {required(real_param("force", "N", 0.0, -infinity, infinity,
+                             "on the second node of the rod, along the rod and away from the first")),
+         times_param(), values_param(), table_param()});
   }();
   return params;
 }

@@ -210,6 +210,10 @@ SceneElement read_element(TableReader& entry, const std::string& key, const std:
     read_table(entry, element.values, folder, element.enabled, rows, notes);
     check_table(entry, element.values, may_jump(element.kind), rows, notes);
   }
+  const bool tabulated =
+      !element.table.empty() || (element.values.has("times") && !element.values.vector("times").empty());
+  if (tabulated && !element.values.has("motion") && entry.has("frequency"))
+    entry.problem("frequency", "stands in place of times, values and table; leave out one of them");
   const bool left_out =
       !element.enabled && element.values.has("table") && !element.values.text("table").empty();
   if (element.values.has("motion") && !left_out) check_motion(entry, element.values, !element.table.empty());

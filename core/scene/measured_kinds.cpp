@@ -2,6 +2,7 @@
 // The kinds of [[constraints]] that hold, drive or bound a measure: their parameters, and what each adds to a
 // structure.
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -82,6 +83,29 @@ double unit_of(const Measure& measure) {
   return is_angle(measure) ? radians_per_degree : 1.0;
 }
 
+// Ascending. Of a sine those of its last wave, or of the first that has grown to its size, and where it turns
+// round there: no other wave goes farther.
+std::vector<double> times_to_look_at(const TimeFunction& f, double end) {
+  constexpr int samples = 4000;
+  double begin = 0;
+  if (f.kind == TimeFunction::Kind::sine) {
+    end = std::min(end, f.start + f.ramp + f.duration);
+    begin = std::max(0.0, end - f.duration);
+  }
+  std::vector<double> times;
+  for (int i = 0; i <= samples; ++i) times.push_back(begin + (end - begin) * i / samples);
+  if (f.kind != TimeFunction::Kind::sine) return times;
+  // rate cos(w s) + rise w / 2 sin(w s) = 0, once in half a wave.
+  const double turn = std::atan2(-f.rate, f.rise * pi / f.duration) / (2 * pi);
+  for (double k = std::ceil(2 * ((begin - f.start) / f.duration - turn));; ++k) {
+    const double t = f.start + f.duration * (turn + 0.5 * k);
+    if (!(t <= end)) break;
+    times.push_back(t);
+  }
+  std::ranges::sort(times);
+  return times;
+}
+
 // A drive that leaves the values that its measure can take is refused, with the time when it does: lengths
 // stay above 0, angles without an axis between 0 and 180 degrees, where they have no direction to go on in.
 void check_reach(const SceneElement& e, ElementAdder& to, const Measure& measure, const TimeFunction& f) {
@@ -89,12 +113,12 @@ void check_reach(const SceneElement& e, ElementAdder& to, const Measure& measure
   if ((!std::isfinite(range.low) && !std::isfinite(range.high)) || !f.moves()) return;
   // A run may end before a constant rate comes that far: where it is deployed.
   if (f.kind == TimeFunction::Kind::rate && to.may_end_before) return;
-  constexpr int samples = 4000;
-  for (int i = 0; i <= samples; ++i) {
-    const double t = to.end_time * i / samples, value = f(t);
+  for (const double t : times_to_look_at(f, to.end_time)) {
+    const double value = f(t);
     if (value > range.low && value < range.high) continue;
     const char* key = f.kind == TimeFunction::Kind::rate     ? "rate"
                       : f.kind == TimeFunction::Kind::smooth ? "to"
+                      : f.kind == TimeFunction::Kind::sine   ? "amplitude"
                                                              : "values";
     const bool path = e.kind == "cable" || e.kind == "telescope",
                sum = measure.kind == MeasureKind::combination && !path;

@@ -106,6 +106,12 @@ void add_member_rows(ParamSection& section, const SceneElement& element, Members
   if (!element.rods.empty()) add_row(section, rods, element.rods);
 }
 
+// Of a number that is not given, where what an entry measures begins at `start`: a sine swings about that.
+double typical_value(const ParamSpec& spec, double start) {
+  if (spec.name == "frequency") return 1;
+  return spec.name == "amplitude" ? 0.1 * start : start;
+}
+
 // "torsion spring of fold angle": of an entry without a name.
 std::string element_title(const SceneElement& element) {
   return spaced(element.kind) + element.name.substr(element.kind.size());
@@ -132,7 +138,8 @@ ParamSection element_section(std::string title, std::string_view table,
         continue;
       if (element.fold_angle && spec.name == "axis") continue;  // its sign is its own
       const bool file = spec.name == "table";
-      add_row(section, spec, file ? ParamValue(element.table) : element.values.value(spec.name), start);
+      add_row(section, spec, file ? ParamValue(element.table) : element.values.value(spec.name),
+              typical_value(spec, start));
     }
   }
   return section;
