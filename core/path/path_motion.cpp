@@ -94,6 +94,7 @@ double PathLaw::holding(double s) const {
 void PathMotion::advance(PathLaw& law, double latest) {
   from_ = t_;
   if (drive_.there()) {
+    refuse_turn_at_dead_centre(latest);
     t_ = latest;
     on_drive(t_, s_, v_);
     return;
@@ -183,6 +184,28 @@ void PathMotion::on_drive(double t, double& s, double& v) const {
     s = next, m = found, here = there;
   }
   v = drive_.target.derivative(1, t) / m.slope;
+}
+
+// Where a drive turns round in a dead centre of what it drives, the structure goes on to the other side of
+// that, and not back: there the branch is another one, and the rate 0 over 0.
+void PathMotion::refuse_turn_at_dead_centre(double latest) const {
+  constexpr int parts = 8;
+  constexpr double dead = 1e-4;  // of a slope; half of its square is left of the way to the dead centre
+  const auto rate = [this](double t) { return drive_.target.derivative(1, t); };
+  for (int k = 0; k < parts; ++k) {
+    double a = t_ + k * (latest - t_) / parts, b = k + 1 == parts ? latest : a + (latest - t_) / parts;
+    if (!(rate(a) * rate(b) <= 0) || (rate(a) == 0 && rate(b) == 0)) continue;
+    for (int halves = 0; halves < 60; ++halves) {
+      const double middle = 0.5 * (a + b);
+      (rate(a) * rate(middle) > 0 ? a : b) = middle;
+    }
+    double s = s_, v = 0;
+    on_drive(b, s, v);
+    const PathTable::Segment* there = law_->table().segment(s);
+    const ValueAndSlope m = there->at(drive_.column, s);
+    if (std::abs(m.slope) * law_->unit() < dead * there->scale[drive_.column])
+      throw PathRefused("at t = " + seconds(b) + ": the drive turns round in a dead centre");
+  }
 }
 
 std::vector<double> PathMotion::unseen_between(const PathLaw& law, double from, double to) const {

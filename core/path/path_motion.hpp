@@ -83,6 +83,7 @@ class PathMotion {
 
  private:
   void on_drive(double t, double& s, double& v) const;
+  void refuse_turn_at_dead_centre(double latest) const;
 
   double t_ = 0, s_ = 0, v_ = 0, from_ = 0, h_ = 0;
   std::vector<ScalarStep> steps_;

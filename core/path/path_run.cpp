@@ -10,6 +10,7 @@
 #include "core/path/path_scope.hpp"
 #include "core/path/path_time.hpp"
 #include "core/path/path_watch.hpp"
+#include "core/simulate/elastic_period.hpp"
 #include "core/simulate/force_sizes.hpp"
 #include "core/simulate/initial_state.hpp"
 #include "core/simulate/latch.hpp"
@@ -53,10 +54,7 @@ class PathRun {
         break;
       }
       if (hooks_.progress) hooks_.progress(motion_.t() / grid_.end());
-      if (resting_)
-        rest();
-      else
-        move();
+      resting_ ? rest() : move();
     }
     if (hooks_.progress && run_.status != RunStatus::stopped) hooks_.progress(1.0);
     run_.newton_iterations = motion_.iterations();
@@ -73,8 +71,8 @@ class PathRun {
   void begin() {
     InitialState start = initial_state(structure(), base_->system);
     run_.warnings = structure().notes;
-    if (std::string warning = velocity_warning(start, structure()); !warning.empty())
-      run_.warnings.push_back(std::move(warning));
+    for (auto said : {velocity_warning(start, structure()), wave_step_warning(structure(), options_, true)})
+      if (!said.empty()) run_.warnings.push_back(std::move(said));
     set_law(structure());
     VectorXd z, tangent, q(base_->system.coordinates());
     if (!path_->point(0.0, z, tangent)) throw PathRefused("no path leads on from the pose at the start");

@@ -95,13 +95,7 @@ std::vector<double> times_to_look_at(const TimeFunction& f, double end) {
   std::vector<double> times;
   for (int i = 0; i <= samples; ++i) times.push_back(begin + (end - begin) * i / samples);
   if (f.kind != TimeFunction::Kind::sine) return times;
-  // rate cos(w s) + rise w / 2 sin(w s) = 0, once in half a wave.
-  const double turn = std::atan2(-f.rate, f.rise * pi / f.duration) / (2 * pi);
-  for (double k = std::ceil(2 * ((begin - f.start) / f.duration - turn));; ++k) {
-    const double t = f.start + f.duration * (turn + 0.5 * k);
-    if (!(t <= end)) break;
-    times.push_back(t);
-  }
+  for (const double turn : turning_times(f, begin, end)) times.push_back(turn);
   std::ranges::sort(times);
   return times;
 }

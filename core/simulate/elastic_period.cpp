@@ -237,16 +237,19 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
   return text.str();
 }
 
-std::string wave_step_warning(const Structure& structure, const SolverOptions& options) {
+std::string wave_step_warning(const Structure& structure, const SolverOptions& options, bool exact) {
   const PrescribedWave wave = fastest_wave(structure, options.end_time);
-  const double followed = wave.period * swing_share_of(options),
-               longest = options.adaptive ? options.turn * wave.period / (2 * pi) : options.step;
-  if (!(std::min(longest, options.step) > followed)) return {};
+  const double followed = wave.period * (exact ? followed_share : swing_share_of(options)),
+               by_turn = options.turn * wave.period / (2 * pi),
+               longest = options.adaptive && !exact ? std::min(options.step, by_turn) : options.step;
+  if (!(longest > followed)) return {};
   std::ostringstream text;
   text.precision(3);
   text << "the step of " << options.step << " s does not resolve the sine of " << wave.name << ", "
-       << wave.period << " s a wave: motions and forces are not to be trusted; to follow it, solver.step = "
-       << said(followed);
+       << wave.period << " s a wave: "
+       << (exact ? "what it does between states is not seen, and peaks are not to be trusted"
+                 : "motions and forces are not to be trusted")
+       << "; to follow it, solver.step = " << said(followed);
   return text.str();
 }
 

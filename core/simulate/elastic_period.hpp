@@ -26,8 +26,9 @@ double swing_share_of(const SolverOptions& options);
 std::string elastic_step_warning(const Model& model, const State& start, const SolverOptions& options,
                                  double swing = 0);
 
-// The same of the fastest sine that the structure prescribes.
-std::string wave_step_warning(const Structure& structure, const SolverOptions& options);
+// The same of the fastest sine that the structure prescribes. `exact`: states are what they are with any
+// step, as along a path; what is said then is that so few of them do not tell it.
+std::string wave_step_warning(const Structure& structure, const SolverOptions& options, bool exact = false);
 
 // The same of cable i, which begins to pull: of how what it holds back swings on it. More stages of dvm
 // follow in a longer step what fewer would not.

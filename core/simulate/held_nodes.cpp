@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/math/coupled_columns.hpp"
+#include "core/structure/prescribed_waves.hpp"
 #include "core/structure/time_edges.hpp"
 
 namespace unfurl {
@@ -43,7 +44,7 @@ std::vector<int> nodes_at_rest(const Model& model, const VectorXd& resting, doub
       of_them.constraints.push_back(structure.constraints[static_cast<std::size_t>(source)]);
   }
   const std::vector<TimeEdge> edges = prescribed_edges(of_them, h);
-  if (edge_after(edges, t) != edges.end()) return {};
+  if (edge_after(edges, t) != edges.end() || std::isfinite(fastest_wave(of_them, t).period)) return {};
   VectorXd any(resting.size()), moves(system.coordinates()), others(moves.size());
   for (Index k = 0; k < any.size(); ++k) any[k] = std::sin(1.0 + static_cast<double>(k));
   system.expand_rate(any, moves);

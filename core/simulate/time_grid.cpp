@@ -31,7 +31,10 @@ TimeGrid::TimeGrid(double start, const SolverOptions& options, std::vector<TimeE
       count_(std::max(
           1L, static_cast<long>(std::ceil(
                   (end_ - start_ - one_time(std::max(std::abs(start_), std::abs(end_)), step_)) / step_)))),
-      edges_(std::move(edges)) {}
+      edges_(std::move(edges)) {
+  // Who passes the deployed pose has no state in it, from which no step leads on where it is singular.
+  if (options.at_deployed == "pass") std::erase_if(edges_, [](const TimeEdge& edge) { return edge.smooth; });
+}
 
 TimeGrid::Target TimeGrid::next(double now) const {
   const double near = one_time(std::max(std::abs(start_), std::abs(now)), step_);

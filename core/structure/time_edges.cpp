@@ -90,8 +90,23 @@ void add_edges(const TimeFunction& f, double step, std::vector<TimeEdge>& edges)
   }
 }
 
+// Where a fold angle is led to the deployed pose and turns round in it, for the first time: nothing passes
+// it.
+void add_turn_when_deployed(const Structure& structure, const Constraint& c, std::vector<TimeEdge>& edges) {
+  constexpr double there = 1e-9;  // [rad]: of a wave, 1e-5 of its time
+  const TimeFunction& f = c.target;
+  if (f.kind != TimeFunction::Kind::sine || c.measure.kind != MeasureKind::fold) return;
+  const double grown = f.start + f.ramp;
+  for (const double turn : turning_times(f, grown, grown + f.duration))
+    if (std::abs(f(turn) - structure.deployment.deployed_fold_angle) <= there)
+      return edges.push_back({.t = turn, .smooth = true});
+}
+
 void add_prescribed(const Structure& structure, double step, std::vector<TimeEdge>& edges) {
-  for (const Constraint& c : structure.constraints) add_edges(c.target, step, edges);
+  for (const Constraint& c : structure.constraints) {
+    add_edges(c.target, step, edges);
+    add_turn_when_deployed(structure, c, edges);
+  }
   for (const Stop& stop : structure.stops) add_edges(stop.reel, step, edges);
   for (const Rod& rod : structure.rods)
     if (rod.expansion != 0) add_edges(rod.warming, step, edges);
@@ -108,6 +123,7 @@ std::vector<TimeEdge> distinct_edges(std::vector<TimeEdge> edges) {
     } else {
       if (edge.jump || edge.impact) distinct.back().t = edge.t;
       distinct.back().jump |= edge.jump, distinct.back().impact |= edge.impact;
+      distinct.back().smooth &= edge.smooth;
     }
   }
   return distinct;

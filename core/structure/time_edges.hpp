@@ -17,6 +17,7 @@ struct TimeEdge {
   // whose command is a rate: steps that end there must not see what is behind. Otherwise something bends.
   bool jump = false;
   bool impact = false;  // of these, a prescribed velocity or acceleration jumps
+  bool smooth = false;  // nothing does: what is led to the deployed pose turns round in it
 };
 
 // The time of a state before a jump at t: so little earlier that the sum of a step and its start does not
@@ -38,7 +39,8 @@ inline bool same_instant(double before, double after) {
 //                    and with it the slope of the forces that inertia takes
 //   drive, sine      as for a rate; without a ramp the velocity jumps at the start, or where it begins at
 //   rest
-//                    (a phase of a quarter turn) the acceleration
+//                    (a phase of a quarter turn) the acceleration. Besides, where it turns round in the
+//                    deployed pose
 //   drive, smooth    start and start + duration, for the same reason; shorter than two steps, three times
 //                    between them too
 //   drive, spline    the ends, where the acceleration jumps; of the points between, where f''' jumps, those

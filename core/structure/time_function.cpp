@@ -218,6 +218,17 @@ bool make_jumps(TimeFunction& f, double near) {
   return exact;
 }
 
+// rate cos(w s) + rise w / 2 sin(w s) = 0, once in half a wave.
+std::vector<double> turning_times(const TimeFunction& f, double from, double to) {
+  const double turn = std::atan2(-f.rate, f.rise * pi / f.duration) / (2 * pi);
+  std::vector<double> times;
+  for (double k = std::ceil(2 * ((from - f.start) / f.duration - turn));; ++k) {
+    const double t = f.start + f.duration * (turn + 0.5 * k);
+    if (!(t <= to)) return times;
+    times.push_back(t);
+  }
+}
+
 // Clamped spline: the bends f'' from the tridiagonal system of continuous slopes, which are zero at both
 // ends,
 //

@@ -50,6 +50,9 @@ struct TimeFunction {
 // near as makes it matter, or where three points are that near.
 bool make_jumps(TimeFunction& f, double near);
 
+// When a sine that has grown to its size turns round, from one time to another.
+std::vector<double> turning_times(const TimeFunction& sine, double from, double to);
+
 // times ascending, at least two; as many values.
 TimeFunction make_spline(std::vector<double> times, std::vector<double> values);
 
