@@ -198,7 +198,7 @@ std::string default_text(const ParamSpec& spec) {
     std::string operator()(bool b) const { return b ? "true" : "false"; }
     std::string operator()(long i) const { return std::to_string(i); }
     std::string operator()(double x) const {
-      if (std::isnan(x)) return "as built";
+      if (std::isnan(x)) return "none";
       std::ostringstream out;
       out << std::setprecision(16) << x;
       return out.str();
