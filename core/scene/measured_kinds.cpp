@@ -108,8 +108,8 @@ void check_reach(const SceneElement& e, ElementAdder& to, const Measure& measure
   // A run may end before a constant rate comes that far: where it is deployed.
   if (f.kind == TimeFunction::Kind::rate && to.may_end_before) return;
   for (const double t : times_to_look_at(f, to.end_time)) {
-    const double value = f(t);
-    if (value > range.low && value < range.high) continue;
+    const double value = f(t), rounding = 8 * std::numeric_limits<double>::epsilon() * std::abs(f.offset);
+    if (value > range.low + rounding && value < range.high - rounding) continue;
     const char* key = f.kind == TimeFunction::Kind::rate     ? "rate"
                       : f.kind == TimeFunction::Kind::smooth ? "to"
                       : f.kind == TimeFunction::Kind::sine   ? "amplitude"
