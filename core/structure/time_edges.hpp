@@ -37,9 +37,8 @@ inline bool same_instant(double before, double after) {
 //                    time stands twice it jumps
 //   drive, rate      start: the velocity jumps (no ramp); otherwise start and start + ramp, where f''' jumps
 //                    and with it the slope of the forces that inertia takes
-//   drive, sine      as for a rate; without a ramp the velocity jumps at the start, or where it begins at
-//   rest
-//                    (a phase of a quarter turn) the acceleration. Besides, where it turns round in the
+//   drive, sine      as for a rate; without a ramp the velocity jumps at the start, or the acceleration where
+//                    it begins at rest (a phase of a quarter turn). Besides, where it turns round in the
 //                    deployed pose
 //   drive, smooth    start and start + duration, for the same reason; shorter than two steps, three times
 //                    between them too

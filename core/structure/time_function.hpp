@@ -12,13 +12,12 @@ namespace unfurl {
 //   rate      f' rises from 0 to `rate` within `ramp` s (a cubic, f'' continuous inside), then stays
 //   smooth    from offset to offset + rise between start and start + duration: 10 u^3 - 15 u^4 + 6 u^5, twice
 //             continuously differentiable
-//   spline    clamped cubic spline through the points (times, values): at rest at its ends, held beyond them,
-//   twice
-//             continuously differentiable between them
-//   sine      waves of `duration` s from `start` on, rate / w sin(w s) + rise sin^2(w s / 2) with s = t -
-//   start
-//             and w = 2 pi / duration: `rate` is that at the start, `rise` that after half a wave. They grow
-//             to that size within `ramp` s, as 10 u^3 - 15 u^4 + 6 u^5: twice continuously differentiable
+//   spline    clamped cubic spline through the points (times, values): at rest at its ends, held beyond
+//             them, twice continuously differentiable between them
+//   sine      waves of `duration` s from `start` on, rate / w sin(w s) + rise sin^2(w s / 2) with s the time
+//             since then and w = 2 pi / duration: `rate` is that at the start, `rise` that after half a wave.
+//             They grow to that size within `ramp` s, as 10 u^3 - 15 u^4 + 6 u^5: twice continuously
+//             differentiable
 //   linear    straight lines through the points, held beyond its ends; a time that stands twice is a jump, f
 //             there is that behind it. For loads; not for drives, whose velocity must not jump
 //   piece     sum of values[k] (t - start)^k, at all times: one of the others from edge to edge
