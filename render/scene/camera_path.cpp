@@ -99,6 +99,10 @@ std::vector<Vec3> reach_of(const std::vector<std::vector<Vec3>>& poses, std::siz
 
 }  // namespace
 
+bool moves_camera(const RenderOptions& options) {
+  return options.camera_keys.size() > 1 || options.follow || options.orbit != 0 || options.turntable != 0;
+}
+
 ViewAngles first_angles(const RenderOptions& options, const MotionBounds& bounds) {
   return preset(options.camera, bounds);
 }

@@ -36,6 +36,9 @@ Shot shot_at(const Trajectory& trajectory, const RenderOptions& options, double 
 // How many there would be at most for a run to this end time [s].
 double most_shots(double end_time, const RenderOptions& options);
 
+// Does it stand elsewhere in one picture of a film than in another?
+bool moves_camera(const RenderOptions& options);
+
 // From where a film begins to look.
 ViewAngles first_angles(const RenderOptions& options, const MotionBounds& bounds);
 

@@ -72,7 +72,9 @@ void FrameBuilder::make_room(const PointSource& points, const ViewAngles& view, 
   if (heading.high > margins.top)
     if (dimensions || style_.options.follow || heading.high > beside || in_the_way(true, heading))
       margins.top = std::max(margins.top, std::min(heading.high, most));
-  if (style_.covered.high > margins.top && in_the_way(true, style_.covered))
+  // A camera that turns about the middle would lose as much below it.
+  const bool turns = moves_camera(style_.options);
+  if (!turns && style_.covered.high > margins.top && in_the_way(true, style_.covered))
     margins.top = std::min(style_.covered.high, most);
   if (legend.high > margins.bottom && in_the_way(false, legend)) margins.bottom = std::min(legend.high, most);
 }

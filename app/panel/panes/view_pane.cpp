@@ -8,8 +8,8 @@
 
 #include "app/panel/document/build_edits.hpp"
 #include "app/panel/panes/panes.hpp"
-#include "app/panel/view/film_camera.hpp"
 #include "core/diagnostics/diagnostics.hpp"
+#include "render/scene/camera_path.hpp"
 #include "render/scene/view.hpp"
 
 namespace unfurl {

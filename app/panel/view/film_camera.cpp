@@ -63,10 +63,6 @@ OrbitCamera film_view(const PanelState& state) {
   return orbit;
 }
 
-bool moves_camera(const RenderOptions& picture) {
-  return picture.camera_keys.size() > 1 || picture.follow || picture.orbit != 0 || picture.turntable != 0;
-}
-
 namespace {
 
 std::vector<CameraKey> keys_with(std::vector<CameraKey> others, const PanelState& state,

@@ -9,7 +9,6 @@ namespace unfurl {
 // Where the film's own camera is at the present time, with its distance as keys mean it, in a picture of the
 // view's size.
 OrbitCamera film_view(const PanelState& state);
-bool moves_camera(const RenderOptions& picture);
 
 // The document with a key at the present time, beside those that there are or (`only`) in place of them: the
 // camera's direction, and its zoom: how much nearer it is than one that sees the whole motion in the view.
