@@ -86,7 +86,9 @@ void write_plot(const JudgedRun& run, const std::string& name, const std::string
     throw StudyError("no figure " + in_quotes(name) + " of this run" + did_you_mean(name, known));
   FigureOptions options;
   options.style = find_figure_style(style);
-  if (!options.style) throw StudyError("no style " + in_quotes(style));
+  std::vector<std::string_view> styles;
+  for (const FigureStyle& row : figure_styles()) styles.push_back(row.name);
+  if (!options.style) throw StudyError("no style " + in_quotes(style) + did_you_mean(style, styles));
   const std::string extension = std::filesystem::path(file).extension().string();
   if (extension != ".png" && extension != ".svg" && extension != ".pdf")
     throw StudyError("a figure is written as .png, .svg or .pdf, not " + in_quotes(extension));

@@ -131,6 +131,8 @@ SceneSource as_now(const SceneSource& given) {
 
 py::dict sweep_scene(const SceneSource& given, const std::vector<std::pair<std::string, AxisValues>>& vary,
                      const std::vector<std::string>& measures, int threads, const std::string& folder) {
+  if (threads < 1 || threads > 1024)  // as the program's --threads
+    throw StudyError("threads: must be a whole number from 1 to 1024; got " + std::to_string(threads));
   SweepPlan plan{as_now(given), {}, {}, {}};
   for (const auto& [key, values] : vary) {
     SweepAxis axis;

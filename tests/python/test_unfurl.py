@@ -446,6 +446,11 @@ def test_what_a_person_can_mend_is_an_error_of_unfurl(tmp_path):
     run = unfurl.Scene("hoop6_sector", set={"solver.end_time": 0.2}).run()
     with pytest.raises(unfurl.StudyError, match="a figure is written as .png, .svg or .pdf, not '.bmp'"):
         run.plot("energy", tmp_path / "g.bmp")
+    with pytest.raises(unfurl.StudyError, match="no style 'slides'; did you mean 'slide'\\?"):
+        run.plot("energy", tmp_path / "g.pdf", style="slides")
+    for threads in (0, -3, 1025):
+        with pytest.raises(unfurl.StudyError, match=f"threads: must be a whole number from 1 to 1024; got {threads}"):
+            unfurl.Scene("hoop6_sector").sweep({"structure.fold_angle": [40, 50]}, "deploy_time", threads=threads)
     with pytest.raises(unfurl.StudyError, match="a frame is written as .png, not '.jpg'"):
         run.frame(0.1, tmp_path / "g.jpg")
     (tmp_path / "file").write_text("")
