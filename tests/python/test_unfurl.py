@@ -257,6 +257,11 @@ def test_numbers_are_those_of_the_array():
     run = unfurl.Scene("double_pendulum", set={"solver.end_time": 0.1}).run()
     for i, name in enumerate(run.nodes):
         assert np.array_equal(run.x[:, i], run.x[name])
+    # As NumPy 2 asks: what it calls a copy is one, which may be written into.
+    mine = run.x.__array__(copy=True)
+    mine[:] = 1
+    assert not np.shares_memory(mine, run.x.array) and np.shares_memory(run.x.__array__(), run.x.array)
+    assert run.x.__array__(np.float32, copy=True).dtype == np.asarray(run.x, dtype=np.float32).dtype == np.float32
 
 
 def test_sweeps_take_words_truth_values_and_lists():

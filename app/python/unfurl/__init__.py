@@ -92,7 +92,7 @@ class Named:
         return name in self._index
 
     def __array__(self, dtype=None, copy=None):
-        return self.array if dtype is None else self.array.astype(dtype)
+        return np.array(self.array, dtype=dtype) if copy else np.asarray(self.array, dtype=dtype)
 
     def __len__(self):
         return len(self.array)
