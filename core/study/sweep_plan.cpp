@@ -23,6 +23,7 @@
 #include "core/scene/write.hpp"
 #include "core/study/sweep.hpp"
 #include "core/text/nearest_name.hpp"
+#include "core/text/typeset_number.hpp"
 
 namespace unfurl {
 namespace {
@@ -89,9 +90,11 @@ std::string replaced(std::string text, std::string_view what, std::string_view w
   return text;
 }
 
-// As figures write it: "m/s²", "N·m".
+// As figures write it: "kg/m³", "N m²".
 std::string typeset(const std::string& unit) {
-  return replaced(replaced(replaced(unit, "deg", "\u00B0"), "^2", "\u00B2"), " ", "\u00B7");
+  std::string text = replaced(unit, "deg", "\u00B0");
+  for (const int n : {2, 3, 4}) text = replaced(std::move(text), "^" + std::to_string(n), superscript(n));
+  return text;
 }
 
 // "structure.fold_angle": "fold angle"; "solver.step": "solver step"; "forces[drag_1].damping": "drag_1

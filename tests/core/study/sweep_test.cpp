@@ -376,6 +376,10 @@ TEST_CASE("axes of figures are called by words and units") {
   CHECK(titles("hoop6", {}, "solver.method=dvm,rk4") == Pair("solver method", "solver method = dvm"));
   CHECK(titles("pendulum", {}, "gravity.acceleration[2]=-9.81,0").first ==
         "gravity acceleration[2] (m/s\u00B2)");
+  CHECK(titles("hoop6", {}, "structure.density=1000:3000:3") ==
+        Pair("density (kg/m\u00B3)", "density = 1000 kg/m\u00B3"));
+  const std::string spring = "forces[0]={kind='torsion_spring', fold_angle=true, stiffness=1}";
+  CHECK(titles("hoop6", {spring}, "forces[0].stiffness=1:2:3").first == "forces[0] stiffness (N m/rad)");
   CHECK(titles("four_bar", {"structure.nodes.A.mass=1"}, "structure.nodes.B.mass=1:2:3").first ==
         "nodes B mass (kg)");
   const auto called = [](const char* axis) { return parse_axis(axis).title(); };
