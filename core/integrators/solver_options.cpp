@@ -53,9 +53,10 @@ const ParamBinding<O>& keys() {
                      "method is then symmetric only"),
        &O::adaptive},
       {only_with("adaptive", {"true"},
-                 positive_param("turn", "rad", 0,
-                                "with `adaptive`: about how far a rod may turn, a swing on a spring go on, "
-                                "or velocities change, in a step")),
+                 positive_param(
+                     "turn", "rad", 0,
+                     "with `adaptive`: about how far a rod may turn, a swing on a spring or a sine go on, "
+                     "or velocities change, in a step")),
        &O::turn},
       {real_param("tolerance", "m", 0, 0.0, 1e6,
                   "of node positions; stages and step are picked for it; 0: they are as given"),

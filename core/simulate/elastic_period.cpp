@@ -240,7 +240,8 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
 std::string wave_step_warning(const Structure& structure, const SolverOptions& options, bool exact) {
   const PrescribedWave wave = fastest_wave(structure, options.end_time);
   const double followed = wave.period * (exact ? followed_share : swing_share_of(options)),
-               by_turn = options.turn * wave.period / (2 * pi),
+               by_turn = std::max(options.turn * wave.period / (2 * pi),
+                                  StepControl::smallest_share * options.step),
                longest = options.adaptive && !exact ? std::min(options.step, by_turn) : options.step;
   if (!(longest > followed)) return {};
   std::ostringstream text;

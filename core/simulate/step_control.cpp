@@ -10,7 +10,6 @@
 namespace unfurl {
 namespace {
 
-constexpr double smallest_share = 1e-5;  // of the largest step: slower than this, a run is better refused
 // Steps that alternate about what is wanted by more than this factor do so to the end: a start anew.
 constexpr double out_of_step = 1.5;
 

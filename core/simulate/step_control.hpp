@@ -28,6 +28,7 @@ namespace unfurl {
 // an event), it starts anew. A symplectic method is no longer symplectic with it.
 class StepControl {
  public:
+  static constexpr double smallest_share = 1e-5;  // of the largest step: below, a run is better refused
   StepControl(const Structure& structure, const System& system, const SolverOptions& options);
   // The step that follows `state` [s]; to be asked once for every accepted state, in order.
   double next(const State& state);
