@@ -28,16 +28,16 @@ double rate_part(const TimeFunction& f, int order, double t) {
   return order == 1 ? f.rate * (3 * u * u - 2 * u * u * u) : f.rate / f.ramp * (6 * u - 6 * u * u);
 }
 
-// 10 u^3 - 15 u^4 + 6 u^5 and its derivatives by u.
-double smooth_rise(int order, double u) {
+// To `rise` within d seconds, of which the share u is over.
+double rise_part(double rise, double d, int order, double u) {
   const double v = 1 - u;
-  if (order == 0) return u * u * u * (10 + u * (-15 + 6 * u));
-  return order == 1 ? 30 * u * u * v * v : 60 * u * v * (v - u);
+  if (order == 0) return rise * u * u * u * (10 + u * (-15 + 6 * u));
+  if (order == 1) return rise / d * 30 * u * u * v * v;
+  return rise / (d * d) * 60 * u * v * (v - u);
 }
 
 double smooth_part(const TimeFunction& f, int order, double t) {
-  const double part = smooth_rise(order, share_over(f.start, f.duration, t));
-  return f.rise * part / std::pow(f.duration, order);
+  return rise_part(f.rise, f.duration, order, share_over(f.start, f.duration, t));
 }
 
 // Whole waves are left out first: however many there were, their ends are where they began.
@@ -60,8 +60,8 @@ double sine_part(const TimeFunction& f, int order, double t) {
   if (t < f.start) return 0.0;
   const double u = f.ramp > 0 ? share_over(f.start, f.ramp, t) : 1.0;
   if (u == 1) return waves(f, order, t);
-  return sized_waves(f, order, t,
-                     {smooth_rise(0, u), smooth_rise(1, u) / f.ramp, smooth_rise(2, u) / (f.ramp * f.ramp)});
+  const auto size = [&](int k) { return rise_part(1.0, f.ramp, k, u); };
+  return sized_waves(f, order, t, {size(0), size(1), size(2)});
 }
 
 // The interval of t; before the first and behind the last point the nearest one.

@@ -50,6 +50,9 @@ TEST_CASE("an entry of the scene has a row for each of its parameters") {
   CHECK(row_named(sections, "constraints[0].to").spec.unit == "deg");
   // Where it begins: the scene's own fold angle, to round-off of an arctangent.
   CHECK(row_named(sections, "constraints[0].to").typical == Approx(85).margin(1e-9));
+  CHECK(row_named(sections, "constraints[0].amplitude").typical ==
+        Approx(8.5).margin(1e-9));  // a swing about it
+  CHECK(row_named(sections, "constraints[0].frequency").typical == 1);
   CHECK(std::get<std::string>(row_named(sections, "constraints[0].motion").value) == "smooth");
   CHECK(std::get<bool>(row_named(sections, "constraints[0].enabled").value));
   // Around the drive's own values, both ways.
