@@ -238,8 +238,10 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
 }
 
 std::string wave_step_warning(const Structure& structure, const SolverOptions& options, bool exact) {
+  constexpr double seen_share = 0.5;  // of a period: with fewer states a motion to and fro looks like none
   const PrescribedWave wave = fastest_wave(structure, options.end_time);
-  const double followed = wave.period * (exact ? followed_share : swing_share_of(options)),
+  const double solved = wave.period * swing_share_of(options),
+               followed = exact ? wave.period * followed_share : std::min(solved, wave.period * seen_share),
                by_turn = std::max(options.turn * wave.period / (2 * pi),
                                   StepControl::smallest_share * options.step),
                longest = options.adaptive && !exact ? std::min(options.step, by_turn) : options.step;
@@ -248,8 +250,9 @@ std::string wave_step_warning(const Structure& structure, const SolverOptions& o
   text.precision(3);
   text << "the step of " << options.step << " s does not resolve the sine of " << wave.name << ", "
        << wave.period << " s a wave: "
-       << (exact ? "what it does between states is not seen, and peaks are not to be trusted"
-                 : "motions and forces are not to be trusted")
+       << (exact || !(longest > solved)
+               ? "what it does between states is not seen, and peaks are not to be trusted"
+               : "motions and forces are not to be trusted")
        << "; to follow it, solver.step = " << said(followed);
   return text.str();
 }

@@ -14,6 +14,7 @@
 #include "core/path/path_run.hpp"
 #include "core/path/path_scope.hpp"
 #include "core/path/sector.hpp"
+#include "core/simulate/elastic_period.hpp"
 #include "core/structure/node_positions.hpp"
 #include "core/study/reference.hpp"
 #include "core/study/table.hpp"
@@ -133,6 +134,10 @@ class Picker {
     Simulation run = std::move(best_->run);
     run.position_estimate = best_->estimate;
     run.options.tolerance = options_.tolerance;
+    if (best_->estimate <= options_.tolerance)  // its states are right then
+      for (std::string& warning : run.warnings)
+        if (warning == wave_step_warning(model_->structure, run.options))
+          warning = wave_step_warning(model_->structure, run.options, true);
     if (!(best_->estimate <= options_.tolerance))
       run.warnings.push_back(out_of_reach(options_.tolerance, best_->estimate));
     else if (!best_->compared)

@@ -6,6 +6,7 @@
 #include "core/diagnostics/accuracy.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/path/path_run.hpp"
+#include "core/study/tolerance.hpp"
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -140,6 +141,19 @@ TEST_CASE("steps that do not resolve a sine are warned of and others keep its bo
       run_scene(shaken, {"constraints[shake].frequency=100", "solver.adaptive=true", "solver.step=0.01"});
   CHECK(!says(adaptive, "does not resolve"));
   CHECK(off(adaptive, 100, 0, 0) < 1e-12);
+}
+
+// By the closed form. With many stages the steps that are picked are longer than a wave, their states right.
+TEST_CASE("a tolerance holds where steps are longer than a wave and what they do not show is said") {
+  for (const double frequency : {1.5, 140 / 3.0, 100.0}) {  // of 3 s, as many waves as a grid has steps
+    const Scene scene = read_scene_text(
+        shaken, "s.toml", {"solver.tolerance=1e-6", "constraints[shake].frequency=" + number(frequency)});
+    const Simulation run = simulate_as_asked(build_model(scene), scene.solver);
+    REQUIRE(run.status == RunStatus::completed);
+    CHECK(off(run, frequency, 0, 0) < 1e-6);
+    CHECK_FALSE(says(run, "motions and forces are not to be trusted"));
+    CHECK(says(run, "what it does between states is not seen") == (run.options.step > 0.5 / frequency));
+  }
 }
 
 TEST_CASE("the step that a warning asks for is not warned of") {
