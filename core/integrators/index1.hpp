@@ -33,7 +33,8 @@ class Index1 {
   // The same where rates are moved first onto those that the constraints have then.
   bool evaluate_on(double t, const ConstVec& z, VectorXd& w, MutVec acceleration, MutVec lambda,
                    const VectorXd& tension = {});
-  // A step of Newton's method onto the constraints' values: a pose between states, where a drive has moved on.
+  // A step of Newton's method onto the constraints' values: a pose between states, where a drive has moved
+  // on.
   void move_onto(double t, VectorXd& z, const VectorXd& tension = {});
   // The share of its right-hand side that the last evaluation has left, out of the rows' reach; infinite
   // where a direction is hardly in their reach, by a pivot below `weak`.
