@@ -26,7 +26,7 @@ constexpr double known_share = 0.05;     // the same of the others that count
 constexpr double followed_share = 0.25;  // of a period: steps up to that follow it
 
 // In the three digits that are said of it, and no longer than it is: who takes that step is not warned again.
-double said(double step) {
+double rounded_down(double step) {
   const double unit = std::pow(10.0, std::floor(std::log10(step)) - 2);
   return std::floor(step / unit) * unit;
 }
@@ -69,7 +69,7 @@ std::string spring_step_warning(double period, const SolverOptions& options) {
       << "the step of " << options.step << " s does not resolve the fastest swing on springs, " << period
       << " s: where in it the structure is at a time, and what these springs pull with, is not to be "
          "trusted; to follow it, solver.step = "
-      << said(followed)
+      << rounded_down(followed)
       << "; to let it die out, damping of the spring or solver.method = \"generalized_alpha\" with rho_inf < "
          "1";
   return text.str();
@@ -225,7 +225,7 @@ std::string elastic_step_warning(const Model& model, const State& start, const S
        << " s: such waves are not followed, and forces at single states are theirs (axial_force_unique "
           "= 0 where by more than 1 %); dvm stops those whose period is less than a sixteenth of the step. "
           "To follow them, solver.step = "
-       << said(followed_share * period)
+       << rounded_down(followed_share * period)
        << (options.step > period && options.stages < 4
                ? "; with fewer than four stages they spoil velocities, and forces of all rods that dvm does "
                  "not stop: solver.stages = 4"
@@ -253,7 +253,7 @@ std::string wave_step_warning(const Structure& structure, const SolverOptions& o
        << (exact || !(longest > solved)
                ? "what it does between states is not seen, and peaks are not to be trusted"
                : "motions and forces are not to be trusted")
-       << "; to follow it, solver.step = " << said(followed);
+       << "; to follow it, solver.step = " << rounded_down(followed);
   return text.str();
 }
 
@@ -286,7 +286,7 @@ std::string cable_step_warning(const OneSided& sides, std::size_t i, const Syste
       << options.step
       << " s does not resolve: how far it stretches, how long it pulls and what it throws back are not to be "
          "trusted; solver.step = "
-      << said(followed) << ", or solver.model = \"auto\" where the structure moves in one way only";
+      << rounded_down(followed) << ", or solver.model = \"auto\" where the structure moves in one way only";
   return text.str();
 }
 
