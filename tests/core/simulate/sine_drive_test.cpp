@@ -259,6 +259,12 @@ end_time = 100
     CHECK(error_of(drawn, {set, "constraints[winch].ramp=300", "constraints[winch].amplitude=5"}).empty() ==
           (frequency < 0.1));  // grows to a fifth of it
   }
+  // By a billionth of a metre, and as little short of it, between all times that divide a wave.
+  const double utmost = 0.8 / (1 + std::sin(37.7 * pi / 180));
+  for (const double over : {-1e-9, 1e-9})
+    CHECK(error_of(drawn,
+                   {"constraints[winch].phase=37.7", "constraints[winch].amplitude=" + number(utmost + over)})
+              .empty() == (over < 0));
   CHECK(error_of(drawn, {"constraints[winch].frequency=0"}).find("must be > 0 Hz") != std::string::npos);
 }
 
