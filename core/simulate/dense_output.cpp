@@ -44,7 +44,7 @@ State on_cubic(const State& a, const State& b, double t) {
   return s;
 }
 
-DenseOutput::Engine DenseOutput::borrow(const std::shared_ptr<const Model>& model) {
+DenseOutput::Engine DenseOutput::borrow(const std::shared_ptr<const Model>& model, State start, double h) {
   {
     const std::lock_guard lock(mutex_);
     const auto found =
@@ -55,7 +55,11 @@ DenseOutput::Engine DenseOutput::borrow(const std::shared_ptr<const Model>& mode
       return engine;
     }
   }
-  return {model, find_method(options_.method)->make(model->system, options_)};
+  Engine made{model, find_method(options_.method)->make(model->system, options_)};
+  // In its first step a method looks closely at which rows are redundant; in all others it knows, and their
+  // last digits are other ones. Whatever is asked first is answered as what is asked again.
+  (void)made.integrator->step(start, h);
+  return made;
 }
 
 void DenseOutput::give_back(Engine engine) {
@@ -81,7 +85,7 @@ State DenseOutput::between(const std::shared_ptr<const Model>& model, const Stat
   // No step of any method need have led so far.
   if (options_.method == "dvm" && options_.stages == closest_stages && !is_short_step(a, b))
     pieces = most_pieces;
-  Engine engine = borrow(model);
+  Engine engine = borrow(model, a, h);
   if (step.contradictions) engine.integrator->expect_contradictions();
   engine.integrator->stop_waves_of(b.t - a.t);
   bool solved = false;

@@ -44,7 +44,7 @@ class DenseOutput {
     std::shared_ptr<const Model> model;
     std::unique_ptr<Integrator> integrator;
   };
-  Engine borrow(const std::shared_ptr<const Model>& model);
+  Engine borrow(const std::shared_ptr<const Model>& model, State start, double h);  // for steps like this one
   void give_back(Engine engine);
 
   SolverOptions options_;
