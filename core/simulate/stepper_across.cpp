@@ -8,7 +8,6 @@
 
 #include "core/constraints/linear_rows.hpp"
 #include "core/integrators/index1.hpp"
-#include "core/math/lagrange.hpp"
 #include "core/simulate/driven_parts.hpp"
 #include "core/simulate/free_motion.hpp"
 #include "core/simulate/led_forces.hpp"
@@ -22,20 +21,6 @@ namespace {
 constexpr int before_it = 8, behind_it = 6, before_rest = 12;  // states on both sides, or before alone
 constexpr double lost_rank = 1e-10;                            // the square of a singular value
 constexpr double agreed = 1e-8;                                // of the structure's size
-
-// Where the motion leads by then, roughly: the cubic through the last states, as a drive that comes to rest
-// there goes.
-State led_to(const Trajectory& run, double t, std::size_t first) {
-  constexpr std::size_t most = 4;
-  std::vector<State> last;
-  for (std::size_t i = run.size(); i-- > first && last.size() < most;)
-    if (last.empty() || run.time(i) < last.back().t) last.push_back(in_last_model(run, i));
-  State out = last.front();
-  out.z.setZero();
-  const auto time = [&](std::size_t k) { return last[k].t; };
-  for (std::size_t k = 0; k < last.size(); ++k) out.z += lagrange_weight(k, last.size(), t, time) * last[k].z;
-  return out;
-}
 
 // To times around t, none nearer than half of what they are `apart`, as far as they are clear of the start.
 std::vector<double> lengths_around(double t, double apart, double from, double until,
@@ -153,12 +138,18 @@ State Stepper::Loop::clear_of(double t, std::size_t first) const {
   std::size_t i = run_.trajectory.size() - 1;
   while (i > first && t - run_.trajectory.time(i) < 0.99 * step) --i;
   State state = in_last_model(run_.trajectory, i);
-  rows.count_falling(state, led_to(run_.trajectory, t, first));
+  std::size_t before_i = i;
+  while (before_i > first && !(run_.trajectory.time(before_i) < state.t)) --before_i;
+  if (const double d = state.t - run_.trajectory.time(before_i); d > 0)
+    // What comes to its pose by then has come at least as fast; what needs twice the time comes to another.
+    rows.count_falling(in_last_model(run_.trajectory, before_i), state,
+                       std::pow(1 + 0.5 * d / (t - state.t), -2));
   double pivot = rows.pivot(state, clear);
   while (i > first && pivot < clear && t - run_.trajectory.time(i) < longest) {
     State before = in_last_model(run_.trajectory, i - 1);
     const double next = rows.pivot(before, clear);
-    if (!(next >= pivot)) break;  // two states of an impact have the same
+    if (!(next >= pivot)) break;                          // two states of an impact have the same
+    if (rows.another_falls(state, before, clear)) break;  // nor back to where another part comes from
     pivot = next, --i;
     state = std::move(before);
   }
@@ -178,7 +169,8 @@ bool Stepper::Loop::ends_in_pose(const Probe& to) const {
   const double t = now().t + to.at;
   if (below == 0 || below <= rows.below(clear_of(t, led_since()), lost_rank)) return false;
   if (same_instant(t, next_prescribed_edge(run_.trajectory))) return true;
-  rows.count_falling(now(), to.state);
+  constexpr double far_weaker = 0.1;
+  rows.count_falling(now(), to.state, far_weaker);
   const double left = std::sqrt(rows.pivot(to.state, clear)), before = std::sqrt(rows.pivot(now(), clear));
   return left * to.at <= soon * run_.options.step * (before - left);
 }

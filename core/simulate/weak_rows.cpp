@@ -30,13 +30,24 @@ double WeakRows::pivot(const State& state, double bound) {
   return least;
 }
 
-void WeakRows::count_falling(const State& from, const State& to) {
-  constexpr double far_weaker = 0.1, any = 1;
+void WeakRows::count_falling(const State& from, const State& to, double share) {
+  constexpr double any = 1, lost_rank = 1e-10;
   if (parts_.size() < 2) return;
   std::vector<bool> falls;
-  for (FreeMotion& part : parts_)
-    falls.push_back(part.weakest_pivot(to, any) < far_weaker * part.weakest_pivot(from, any));
+  for (FreeMotion& part : parts_)  // a row that others explain in the one state alone has no pivot there
+    falls.push_back(part.rows_below(to, lost_rank) > part.rows_below(from, lost_rank) ||
+                    part.weakest_pivot(to, any) < share * part.weakest_pivot(from, any));
   if (std::ranges::count(falls, true) > 0) counts_ = std::move(falls);
+}
+
+bool WeakRows::another_falls(const State& from, const State& to, double bound) {
+  constexpr double falls = 0.9;
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    if (counts_[p]) continue;
+    const double pivot = parts_[p].weakest_pivot(to, bound);
+    if (pivot < bound && pivot < falls * parts_[p].weakest_pivot(from, 1)) return true;
+  }
+  return false;
 }
 
 }  // namespace unfurl

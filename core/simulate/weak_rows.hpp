@@ -17,8 +17,11 @@ class WeakRows {
   Index below(const State& state, double bound);
   // The smallest pivot, looked for below `bound`, of parts that count: all, at first.
   double pivot(const State& state, double bound);
-  // From now on those that are far weaker in the one state than in the other; all, where none is.
-  void count_falling(const State& from, const State& to);
+  // From now on those whose pivot falls to such a share on the way from one state to the other; all, where
+  // none does.
+  void count_falling(const State& from, const State& to, double share);
+  // Does one that does not count become weaker than `bound` on that way?
+  bool another_falls(const State& from, const State& to, double bound);
 
  private:
   std::vector<FreeMotion> parts_;

@@ -218,6 +218,27 @@ TEST_CASE("a linkage passes its flat pose as another one is laid flat for good")
     }
 }
 
+// The one slows down by a polynomial of degree five, the other passes at speed. What the other leaves of its
+// way is 5e-9 m, in a run by itself.
+TEST_CASE("a linkage passes its flat pose at the time at which another one has come to rest in its own") {
+  for (const std::vector<std::string>& how :
+       std::vector<std::vector<std::string>>{{"solver.step=0.02"},
+                                             {"solver.step=0.01", "solver.stages=5"},
+                                             {"solver.step=0.01", "solver.stages=3"}}) {
+    const Simulation run = run_scene(
+        scene("motion = \"smooth\"\nto = 0\nduration = 0.5\n", false, ", " + nodes_at('2', 'C', 'D'),
+              ", " + rods_of('C', 'D'), drive_of('C', 'D', through(1))),
+        how);
+    CAPTURE(how, run.message);
+    REQUIRE(run.status == RunStatus::completed);
+    CHECK(off(run.trajectory, "D1", -start, 1) < 1e-7);
+    for (std::size_t k = 0; k < run.trajectory.size(); ++k)
+      if (run.trajectory.time(k) >= 0.5)
+        CHECK((run.trajectory.node_positions(k).segment<3>(node(run.trajectory, "B1")) - Vec3(1.7, 0, 0))
+                  .norm() < 1e-7);
+  }
+}
+
 // Where a drive comes to rest slowly, steps next to the pose are of rounding: 1e-2 m/s at 3e-6 rad. A load
 // beside it may begin there all the same.
 TEST_CASE("on the way to rest in a flat pose no state is one of rounding, whatever begins beside it") {
