@@ -15,14 +15,15 @@ namespace unfurl {
 class JacobianInPoses {
  public:
   explicit JacobianInPoses(const System& system)
-      : system_(system), G_(system.jacobian_pattern()), q_(system.coordinates()) {}
+      : system_(system), pattern_(system.jacobian_pattern()), G_(pattern_), q_(system.coordinates()) {}
   const System& system() const { return system_; }
-  const SparseRows& pattern() const { return G_; }
+  // With the values of no pose in particular: orders of elimination go by their sizes.
+  const SparseRows& pattern() const { return pattern_; }
   const SparseRows& at(const ConstVec& z);
 
  private:
   const System& system_;
-  SparseRows G_;
+  SparseRows pattern_, G_;
   VectorXd z_, q_;
   std::vector<double> scratch_;
 };
