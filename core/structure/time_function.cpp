@@ -218,8 +218,10 @@ bool make_jumps(TimeFunction& f, double near) {
   return exact;
 }
 
-// rate cos(w s) + rise w / 2 sin(w s) = 0, once in half a wave.
+// rate cos(w s) + rise w / 2 sin(w s) = 0, once in half a wave. Times next to each other may be farther apart
+// than waves.
 std::vector<double> turning_times(const TimeFunction& f, double from, double to) {
+  if (!(from + 0.25 * f.duration > from) || !std::isfinite(f.duration)) return {};
   const double turn = std::atan2(-f.rate, f.rise * pi / f.duration) / (2 * pi);
   std::vector<double> times;
   for (double k = std::ceil(2 * ((from - f.start) / f.duration - turn));; ++k) {

@@ -115,4 +115,15 @@ TEST_CASE("the fastest wave is that of what has begun and has a size") {
   CHECK(fastest_wave(s, 3).name == "slow");
 }
 
+TEST_CASE("a sine turns round nowhere that times between which it does could tell") {
+  TimeFunction f = from_rest();
+  f.start = 0.5, f.duration = 1e-30;  // 5e13 waves between 0.5 and the double behind it
+  CHECK(turning_times(f, f.start, f.start + f.duration).empty());
+  f.duration = std::numeric_limits<double>::infinity();
+  CHECK(turning_times(f, f.start, f.start + f.duration).empty());
+  f.duration = 1e-14;  // still told apart there, where doubles are 1e-16 apart: one in half a wave
+  const std::vector<double> turns = turning_times(f, f.start, f.start + f.duration);
+  CHECK((turns.size() == 2 || turns.size() == 3));
+}
+
 }  // namespace sine_edges_test
