@@ -103,8 +103,9 @@ VectorXd StateForces::multipliers(std::size_t i, VectorXd& node_acceleration) {
     if (closer.doubt.size() > 0 && rough_here) {
       const VectorXd doubt = parts(i).largest_of_rows(closer.doubt),
                      size = parts(i).largest_of_rows(closer.point.lambda);
+      Looks looks;
       for (Index part = 0; part < doubt.size(); ++part)
-        if (doubt[part] > harmless * size[part]) interpolate(i, part, closer);
+        if (doubt[part] > harmless * size[part]) interpolate(i, part, looks, closer);
       here = std::move(closer.point);
     }
     doubt_ = seen_.doubt = std::move(closer.doubt);
@@ -220,7 +221,7 @@ bool StateForces::rests(std::size_t i, const std::vector<std::size_t>& states) c
 // odd about the pose falls away from it, where the forces are smooth it grows. The last state before an event
 // in a singular pose: through five poses before it and what the event says; where nothing follows it: through
 // six poses before it. All that of one part of the structure: what is joined to nothing of it is known.
-void StateForces::interpolate(std::size_t i, Index part, Close& here) {
+void StateForces::interpolate(std::size_t i, Index part, Looks& looks, Close& here) {
   // States on either side: short steps are many in the round-off, parts of a failed one before an end more.
   constexpr std::size_t far = reach, far_from_end = 64;
   const std::vector<std::size_t> behind = beside(i, +1, far);
@@ -230,6 +231,11 @@ void StateForces::interpolate(std::size_t i, Index part, Close& here) {
   if (before.empty() || (at_end && before.size() <= far)) return;  // single states are no run's end
   if (rests(i, before) && rests(i, behind)) return;
   const double t = trajectory_.time(i);
+  const auto closely = [&](double at) -> const Close& {
+    const auto [found, first] = looks.try_emplace(at);
+    if (first) found->second = look_closely(i, trajectory_.state_at(at));
+    return found->second;
+  };
   const auto both = [&](std::size_t first, std::size_t last) {
     return one_way ? t - trajectory_.time(first)
                    : std::min(t - trajectory_.time(first), trajectory_.time(last) - t);
@@ -250,7 +256,7 @@ void StateForces::interpolate(std::size_t i, Index part, Close& here) {
   while (std::ldexp(nearest, levels) <= 0.5 * most) ++levels;
   for (int end = levels; first < end;) {
     const int middle = (first + end) / 2;
-    if (tells_more(look_closely(i, trajectory_.state_at(t - std::ldexp(nearest, middle)))))
+    if (tells_more(closely(t - std::ldexp(nearest, middle))))
       end = middle;
     else
       first = middle + 1;
@@ -258,7 +264,7 @@ void StateForces::interpolate(std::size_t i, Index part, Close& here) {
   std::vector<Close> near;
   const auto look = [&](double apart) {
     for (const double side : {-apart, one_way ? -1.25 * apart : apart}) {
-      near.push_back(look_closely(i, trajectory_.state_at(t + side)));
+      near.push_back(closely(t + side));
       if (!tells_more(near.back())) return false;
     }
     return true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -68,7 +69,8 @@ class StateForces {
   Close look_closely(std::size_t model_of, const State& state);
   Close limit_behind(std::size_t i) const;
   bool rests(std::size_t i, const std::vector<std::size_t>& states) const;
-  void interpolate(std::size_t i, Index part, Close& here);
+  using Looks = std::map<double, Close>;  // beside a state, by time: each once, for all parts that ask for it
+  void interpolate(std::size_t i, Index part, Looks& looks, Close& here);
   const IndependentParts& parts(std::size_t i);  // which say nothing of what is small in each other
 
   // States whose solutions are kept: those around the one that is asked for.
