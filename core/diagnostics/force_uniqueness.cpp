@@ -195,7 +195,7 @@ VectorXd acting_in(const Trajectory& trajectory, const DoubtfulStates& states) {
 class LeastDoubt {
  public:
   LeastDoubt(const Trajectory& trajectory, const DoubtfulStates& doubtful, const Diagnostics& d)
-      : forces_(VectorXd::Zero(d.axial_force.cols())) {
+      : trajectory_(trajectory), forces_(VectorXd::Zero(d.axial_force.cols())) {
     if (doubtful.empty()) return;
     acting_ = acting_in(trajectory, doubtful);
     for (Index i = 0; i < std::ssize(d.t); ++i)
@@ -206,18 +206,29 @@ class LeastDoubt {
     if (std::exchange(model_, &model) == &model) return least_;
     const System& system = model.system;
     const IndependentParts parts(system);
-    VectorXd of_rows = VectorXd::Zero(system.constraints()), acts(system.solved_coordinates());
-    for (Index r = 0; r < forces_.size(); ++r)
-      if (const int row = system.rod_rows()[static_cast<std::size_t>(r)]; row >= 0) of_rows[row] = forces_[r];
-    system.reduce_sizes(acting_, acts);
+    VectorXd of_rows = VectorXd::Zero(system.constraints()), pulls = VectorXd::Zero(acting_.size());
+    for (Index r = 0; r < forces_.size(); ++r) {
+      const Rod& rod = trajectory_.structure().rods[static_cast<std::size_t>(r)];
+      if (const int row = system.rod_rows()[static_cast<std::size_t>(r)]; row >= 0)
+        of_rows[row] = forces_[r];
+      else  // it gives: a force on its ends
+        for (const int end : {rod.a, rod.b})
+          for (Index k = 3 * end; k < 3 * end + 3; ++k) pulls[k] = std::max(pulls[k], forces_[r]);
+    }
+    const auto of_nodes = [&](const VectorXd& sizes) {
+      VectorXd solved(system.solved_coordinates());
+      system.reduce_sizes(sizes, solved);
+      return parts.largest(solved.data());
+    };
     const VectorXd of_parts =
-        (1e-9 * parts.largest_of_rows(of_rows)).cwiseMax(1e-12 * parts.largest(acts.data()));
+        (1e-9 * parts.largest_of_rows(of_rows).cwiseMax(of_nodes(pulls))).cwiseMax(1e-12 * of_nodes(acting_));
     least_.resize(of_rows.size());
     for (Index r = 0; r < least_.size(); ++r) least_[r] = of_parts[parts.of_row(r)];
     return least_;
   }
 
  private:
+  const Trajectory& trajectory_;
   VectorXd forces_, acting_, least_;  // of rods, known ones; of node coordinates; of rows of the model
   const Model* model_ = nullptr;
 };
