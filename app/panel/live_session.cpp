@@ -17,6 +17,7 @@
 #include "core/scene/write.hpp"
 #include "core/scene/write_back.hpp"
 #include "render/image/png.hpp"
+#include "render/scene/camera_path.hpp"
 
 namespace unfurl {
 
