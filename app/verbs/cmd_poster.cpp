@@ -100,8 +100,9 @@ int cmd_poster(const Arguments& arguments) {
   Image poster = draw_poses(builder, style, key, run.trajectory, static_cast<std::size_t>(arguments.poses),
                             scene.render.supersample, *context);
   const int panels = arguments.poses + (key ? 1 : 0);
-  const FrameBuilder::Banner banner = builder.banner(run.trajectory.end_time(), scene.render.title,
-                                                     scene.render.legend && !key, panels * style.width);
+  const bool legend = scene.render.legend;
+  const FrameBuilder::Banner banner = builder.banner(run.trajectory.end_time(), scene.render.title, legend,
+                                                     legend && !key, panels * style.width);
   if (banner.height > 0)
     poster = stacked(draw_banner(banner, style, panels, scene.render.supersample, *context), poster);
   write_png(output, poster, has_alpha(scene.render));

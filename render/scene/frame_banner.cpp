@@ -11,12 +11,14 @@ namespace unfurl {
 // Headings on the left set the height, the legend ends on the last one's line; where it would run into them
 // or has more rows, the strip is higher by as many. Of what would make it higher than most of a picture the
 // least important is left out, but for the title's first line.
-int FrameOverlay::add_banner(double t, bool title, bool legend, int width, DrawList& list) const {
+int FrameOverlay::add_banner(double t, bool title, bool thickness, bool legend, int width,
+                             DrawList& list) const {
   constexpr int most_rows = 40;
   constexpr float most = 0.7f;
   Parts wanted;
   if (title && !style_.title.empty()) wanted = {Part::title, Part::second_line};
-  if (legend) wanted.insert({Part::thickness, Part::legend});
+  if (thickness) wanted.insert(Part::thickness);
+  if (legend) wanted.insert(Part::legend);
   FrameOverlay wide = *this;
   wide.on_banner_ = true;
   wide.width_ = static_cast<float>(width);

@@ -318,12 +318,13 @@ DrawList FrameBuilder::key(double t) const {
   return list;
 }
 
-FrameBuilder::Banner FrameBuilder::banner(double t, bool title, bool legend, int width) const {
+FrameBuilder::Banner FrameBuilder::banner(double t, bool title, bool thickness, bool legend,
+                                          int width) const {
   Banner out{0, key_ground(t)};
   out.list.background_bottom = out.list.background_top;  // that of the pictures goes on below
   out.list.ground.shown = false;
   out.list.planet_half_angle = 0;
-  out.height = overlay_->add_banner(t, title, legend, width, out.list);
+  out.height = overlay_->add_banner(t, title, thickness, legend, width, out.list);
   out.list.arrows.clear();
   return out;
 }

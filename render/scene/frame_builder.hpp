@@ -58,16 +58,15 @@ class FrameBuilder {
   DrawList build(double t, const Led& led = {}) const;
   DrawList build(const Shot& shot, const Led& led = {}) const;
   bool writes_by_camera() const;  // names, lengths, axes: what stands elsewhere when the camera does
-  // What sizes, colours and signs of the picture at a time stand for, alone: for a place beside pictures
-  // without.
+  // What colours and signs of the picture at a time stand for, alone: for a place beside pictures without.
   DrawList key(double t) const;
-  // A strip of that width above such pictures: the style's title, and what a key tells without its bar of
-  // colours.
+  // A strip of that width above such pictures: the style's title, how thick rods are drawn, and what a key
+  // tells without its bar of colours.
   struct Banner {
     int height = 0;  // 0: nothing is written [pixels]
     DrawList list;
   };
-  Banner banner(double t, bool title, bool legend, int width) const;
+  Banner banner(double t, bool title, bool thickness, bool legend, int width) const;
   const Camera& camera() const { return still_.camera; }  // of the first picture
   // Width over height of the picture that the whole motion fills, within reason: 2/5 to 5/2.
   double fitting_aspect() const { return fitting_aspect_; }

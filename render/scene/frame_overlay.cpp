@@ -107,7 +107,7 @@ void FrameOverlay::add(double t, const VectorXd& whole, DrawList& list) const {
 }
 
 void FrameOverlay::add_key(double t, DrawList& list) const {
-  Parts wanted{Part::thickness, Part::legend};
+  Parts wanted{Part::legend};
   if (field_ && has_colors()) wanted.insert(Part::color_bar);
   write(t, {}, wanted, list);
 }

@@ -35,10 +35,10 @@ class FrameOverlay {
     double right = 0, top = 0;
   };
   InsetRoom inset_room() const;
-  void add_key(double t, DrawList& list) const;  // what sizes, colours and signs of a picture stand for
+  void add_key(double t, DrawList& list) const;  // what colours and signs of a picture stand for
   // Title, thickness and legend, as wanted, on a strip that is as wide as given and as high as they need;
   // returns that height, 0 where nothing is written [pixels].
-  int add_banner(double t, bool title, bool legend, int width, DrawList& list) const;
+  int add_banner(double t, bool title, bool thickness, bool legend, int width, DrawList& list) const;
 
  private:
   struct Box {  // a place that is taken [pixels]

@@ -411,7 +411,7 @@ FrameBuilder::Banner banner_of(const std::string& text, const FrameStyle& size, 
   style.width = size.width, style.height = size.height;
   style.options.supersample = size.options.supersample;
   return FrameBuilder(run.trajectory, style)
-      .banner(run.trajectory.end_time(), title, legend, panels * size.width);
+      .banner(run.trajectory.end_time(), title, legend, legend, panels * size.width);
 }
 
 FrameStyle panel(int width, int height, int fine = 1) {
@@ -463,7 +463,7 @@ TEST_CASE("what is above a poster is whole at every size") {
         }
 }
 
-TEST_CASE("the factor of thickness is whole beside the poses of a narrow poster") {
+TEST_CASE("the factor of thickness is whole and said once above the poses of a narrow poster") {
   const Scene scene = read_scene_text(
       "structure.kind = 'hoop'\nsolver.end_time = 0.2\n[render]\nrod_scale = 3\ncolour_by = 'speed'\n",
       "s.toml");
@@ -473,11 +473,18 @@ TEST_CASE("the factor of thickness is whole beside the poses of a narrow poster"
   for (const auto& [width, height] : {std::pair{120, 320}, {100, 200}, {320, 270}}) {
     CAPTURE(width, height);
     style.width = width, style.height = height;
-    const DrawList list = FrameBuilder(run.trajectory, style).key(run.trajectory.end_time());
-    std::string said;
-    for (const TextLabel& l : list.labels) said += l.text + " ";
-    CHECK_THAT(said, Catch::Contains("rods drawn 3.0 \u00D7 as thick"));
-    check_texts(list, width, height);
+    const FrameBuilder frames(run.trajectory, style);
+    const auto said = [&](const DrawList& list, int wide, int high) {
+      std::string all;
+      for (const TextLabel& l : list.labels) all += l.text + " ";
+      check_texts(list, wide, high);
+      return all;
+    };
+    const double end = run.trajectory.end_time();
+    const FrameBuilder::Banner banner = frames.banner(end, true, true, false, 4 * width);
+    CHECK_THAT(said(banner.list, 4 * width, banner.height),
+               Catch::Contains("rods drawn 3.0 \u00D7 as thick"));
+    CHECK_THAT(said(frames.key(end), width, height), !Catch::Contains("rods"));
   }
 }
 

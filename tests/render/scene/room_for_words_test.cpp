@@ -184,7 +184,7 @@ TEST_CASE("what is written above and within small poses leaves most of the pictu
     CAPTURE(width);
     const FrameBuilder frames(film.run.trajectory, film.style(width, height));
     for (const int poses : {1, 3, 5}) {
-      const FrameBuilder::Banner banner = frames.banner(0, true, true, poses * width);
+      const FrameBuilder::Banner banner = frames.banner(0, true, true, true, poses * width);
       const auto title = static_cast<int>(std::ranges::count(banner.list.labels, true, &TextLabel::bold));
       CHECK((title > 0 || poses * width < 110));  // of less room dots alone would be left
       // One line of the title has its room in any.
