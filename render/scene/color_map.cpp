@@ -25,11 +25,11 @@ Color along(const std::array<Rgb, n>& stops, double x) {
 
 Color diverging_color(double x) {
   static constexpr std::array<Rgb, 7> stops{{{40, 60, 180},
-                                             {85, 125, 225},
-                                             {145, 180, 235},
-                                             {200, 200, 200},
-                                             {235, 160, 130},
-                                             {215, 90, 70},
+                                             {66, 104, 214},
+                                             {98, 134, 218},
+                                             {148, 148, 148},
+                                             {206, 114, 88},
+                                             {196, 66, 52},
                                              {165, 5, 35}}};
   return along(stops, 0.5 + 0.5 * x);
 }

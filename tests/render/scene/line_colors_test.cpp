@@ -30,6 +30,29 @@ const TextLabel* label(const DrawList& list, const std::string& text) {
 
 }  // namespace
 
+// Relative luminance and contrast as WCAG 2.1 defines them; its criterion 1.4.11 asks for 3:1 between what is
+// drawn and its ground. A colour that lies between the two hues in lightness, too, has that on white; on the
+// grounds of films, of which one is as dark as the other is pale, 2:1.
+TEST_CASE("no force at all is told from the ground of every look") {
+  const auto luminance = [](const Color& c) {
+    const auto linear = [](double v) {
+      return v <= 0.03928 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    };
+    return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
+  };
+  const double none = luminance(diverging_color(0));
+  for (const Look& look : looks())
+    for (const Color& ground : {look.background_top, look.background_bottom}) {
+      CAPTURE(look.name, ground.r, ground.g, ground.b);
+      const double other = luminance(ground);
+      CHECK((std::max(none, other) + 0.05) / (std::min(none, other) + 0.05) >= (other > 0.99 ? 3 : 2));
+    }
+  // Lighter towards it from both ends: shades are told in grey, too.
+  for (const double side : {-1.0, 1.0})
+    for (int k = 0; k < 20; ++k)
+      CHECK(luminance(diverging_color(side * 0.05 * k)) > luminance(diverging_color(side * 0.05 * (k + 1))));
+}
+
 // Where their own forces colour them, what is named is what they are while they are slack.
 TEST_CASE("cables and nets are named, and no slack one looks pulled or loaded beside colours of force") {
   Scene scene =
