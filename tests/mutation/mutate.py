@@ -57,6 +57,11 @@ def code_of(line):
     return re.sub(r"//.*", blank, re.sub(r"'(\\.|[^'\\])'|\"(\\.|[^\"\\])*\"", blank, line))
 
 
+def without_raw_strings(text):
+    """The text with the inside of raw strings blanked, line by line as it was."""
+    return re.sub(r'R"([^(\s]*)\(.*?\)\1"', lambda m: re.sub(r"[^\n]", " ", m.group()), text, flags=re.S)
+
+
 def end_of_operand(code, at, stops):
     """Where the expression that begins at `at` ends: before one of `stops` or a closing bracket, depth 0."""
     depth = 0
@@ -169,9 +174,12 @@ def candidates():
             if not name.endswith(".cpp"):
                 continue
             path = os.path.join(folder, name)
-            lines = open(path, encoding="utf-8").read().split("\n")
-            here = []
+            text = open(path, encoding="utf-8").read()
+            lines, here = text.split("\n"), []
+            raw = [a != b for a, b in zip(lines, without_raw_strings(text).split("\n"))]
             for i, line in enumerate(lines):
+                if raw[i]:
+                    continue
                 before = code_of(lines[i - 1]).rstrip() if i else ""
                 code = code_of(line)
                 if re.match(r"\s*(#|//|template|static_assert|case |using |namespace|struct |class )|.*constexpr", code):
