@@ -38,6 +38,8 @@ TEST_CASE("a range meets the whole numbers between its ends") {
   CHECK(parse_axis("x=0:1.5:6").values == std::vector<std::string>{"0", "0.3", "0.6", "0.9", "1.2", "1.5"});
   CHECK(parse_axis("x=0.12345678901234567:1:3:log").numbers[0] == 0.12345678901234567);  // ends as they are
   CHECK(parse_axis("x=0.001:1e15:3").numbers[0] == 0.001);
+  CHECK(parse_axis("x=1e15:0.12345678901234567:3").numbers.back() == 0.12345678901234567);  // 0.125 by steps
+  CHECK(parse_axis("x=1:0.12345678901234567:3:log").numbers.back() == 0.12345678901234567);
 }
 
 TEST_CASE("axes are ranges, log ranges or lists") {
