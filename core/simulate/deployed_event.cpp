@@ -325,13 +325,9 @@ class Locator {
     if (!(error(state) > extrapolated)) return;
     State fitted = state;
     project(system(), fitted);
-    if (error(fitted) < error(state) &&
-        (fitted.z - state.z).lpNorm<Eigen::Infinity>() < fitting * largest_length() * error(state))
+    if (error(fitted) < error(state) && (fitted.z - state.z).lpNorm<Eigen::Infinity>() <
+                                            fitting * system().constraint_lengths().maxCoeff() * error(state))
       state = std::move(fitted);
-  }
-  double largest_length() const {
-    const VectorXd& lengths = system().constraint_lengths();
-    return lengths.size() > 0 ? lengths.maxCoeff() : 0.0;
   }
   double error(const State& state) {  // the largest of a constraint, as a share of its length
     if (system().constraints() == 0) return 0.0;
