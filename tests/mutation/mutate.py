@@ -42,7 +42,7 @@ EQUIVALENT = [
     ("factor 2", r"twice\(@\) \* \w+::Zero\(", "twice nothing"),
     ("sign", r"sign\(@\) \* \w+::Zero\(", "nothing, the other way round"),
     ("factor 2", r"twice\(@\) \* (\de-(0?[89]|1\d)|nothing|round_off|rounding|tiny)\b", "twice a threshold of round-off"),
-    ("factor 2", r"twice\(@\) \* [\w.\[\]]+ (<|<=|>|>=|==|!=) 0[^.\w]", "twice has the same sign"),
+    ("factor 2", r"twice\(@\) \* [\w.:\[\]]+(\(([^()]|\([^()]*\))*\))? (<|<=|>|>=|==|!=) 0[^.\w]", "twice has the same sign"),
     ("off by one", r"\bint (it|round|tries|halvings) = \(0 \+ .*; (it|round|tries|halvings) <=? ([89]|\d\d+|(most|max|fit)_\w+)\b", "a round less of those"),
     ("off by one", r"^ +double s = (0|\(0 \+ .*\)), v = (0|\(0 \+ .*\));", "written over by what is asked for, at() of a motion"),
     ("boundary", r"edge\((it|round|tries|halvings)\) <=? ([89]|\d\d+|(most|max|fit)_\w+)\b", "a round more of those"),
