@@ -3,10 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
 
+#include "core/text/utf8.hpp"
 #include "render/plot/painter.hpp"
 #include "render/plot/style.hpp"
 #include "render/plot/written_text.hpp"
+#include "render/ui/fonts.hpp"
 #include "render/ui/imgui_canvas.hpp"
 #include "render/ui/sheet.hpp"
 
@@ -56,8 +62,49 @@ void draw_inset(const Inset& inset, bool night, Sheet& sheet, ImDrawList& paper)
 
 }  // namespace
 
+// Where in a texture a letter stands shows in the last bit of its pixels: each list is drawn with a sheet
+// that has what it needs and nothing else, so that a frame is the same whatever was drawn before it.
 struct TextOverlay::Fonts {
-  Sheet sheet;
+  // Heights of lines, bold or not, and letters that fonts do not have from the start.
+  struct Needs {
+    std::set<std::pair<float, bool>> sizes;
+    std::set<std::string> letters;
+    auto operator<=>(const Needs&) const = default;
+  };
+  std::map<Needs, Sheet> sheets;
+
+  static void add_letters(const std::string& text, Needs& needs) {
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t first = at;
+      if (!is_common(next_code_point(text, at))) needs.letters.insert(text.substr(first, at - first));
+    }
+  }
+
+  static Needs needs_of(const DrawList& list) {
+    Needs needs;
+    for (const TextLabel& label : list.labels) {
+      needs.sizes.emplace(label.height, label.bold);
+      add_letters(label.text, needs);
+    }
+    if (!list.inset.figure) return needs;
+    plot::WrittenText written;
+    plot::paint(*list.inset.figure, inset_layout(list.inset), written);
+    add_letters(written.all(), needs);
+    for (const double size : plot::text_sizes)
+      needs.sizes.emplace(plot::ImguiCanvas::font_pixels(size, list.inset.pixels_per_point), false);
+    return needs;
+  }
+
+  Sheet& of(const DrawList& list) {
+    constexpr std::size_t most = 8;  // of a window that changes its size
+    const Needs needs = needs_of(list);
+    if (const auto found = sheets.find(needs); found != sheets.end()) return found->second;
+    if (sheets.size() >= most) sheets.clear();
+    Sheet& sheet = sheets[needs];
+    for (const std::string& letter : needs.letters) sheet.need(letter);
+    for (const auto& [height, bold] : needs.sizes) sheet.font(height, bold);
+    return sheet;
+  }
 };
 
 TextOverlay::TextOverlay() : fonts_(std::make_unique<Fonts>()) {}
@@ -66,15 +113,7 @@ TextOverlay::~TextOverlay() = default;
 void TextOverlay::draw(const DrawList& list, int width, int height) {
   const Inset& inset = list.inset;
   if (list.labels.empty() && list.lines.empty() && list.areas.empty() && !inset.figure) return;
-  Sheet& sheet = fonts_->sheet;
-  for (const TextLabel& label : list.labels) sheet.need(label.text), sheet.font(label.height, label.bold);
-  if (inset.figure) {
-    plot::WrittenText written;
-    plot::paint(*inset.figure, inset_layout(inset), written);
-    sheet.need(written.all());
-    for (const double size : plot::text_sizes)
-      sheet.font(plot::ImguiCanvas::font_pixels(size, inset.pixels_per_point));
-  }
+  Sheet& sheet = fonts_->of(list);
   ImDrawList& paper = sheet.begin(width, height);
   for (const OverlayArea& area : list.areas)
     paper.AddRectFilled({area.x0, area.y0}, {area.x1, area.y1}, packed(area.color), area.round);

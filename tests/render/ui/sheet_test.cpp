@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/ui/sheet.hpp"
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "render/gl/context.hpp"
 #include "render/gl/framebuffer.hpp"
@@ -179,6 +181,32 @@ TEST_CASE("labels in any letters that the font has are written in them") {
   CHECK(first != written("\u0448"));
   CHECK(first != written("?"));
   CHECK(first == written("\u0436"));
+}
+
+// What a list looks like is its own affair, to the bit: the frames of a film that is drawn in parts are those
+// of one that is drawn at once. A larger font moves the letters of a texture, and bilinear samples round
+// elsewhere.
+TEST_CASE("labels look the same whatever was written before them") {
+  const Paper paper;
+  const auto written = [&](TextOverlay& overlay, const std::vector<TextLabel>& labels) {
+    paper.clear();
+    DrawList list;
+    list.labels = labels;
+    overlay.draw(list, 200, 100);
+    return paper.frame.read().rgba;
+  };
+  std::vector<TextLabel> labels;
+  for (int i = 0; i < 12; ++i) {
+    const auto row = static_cast<float>(i / 2), column = static_cast<float>(i % 2);
+    labels.push_back(
+        {100 * column, 16 * row, 7 + static_cast<float>(i) / 3, {0.2f, 0.3f, 0.4f, 1}, "Quick brown: 3.2 s"});
+  }
+  TextOverlay first, later;
+  const auto alone = written(first, labels);
+  written(later, {{100, 30, 40, {0, 0, 0, 1}, "Title \u0416", 0.5f, true}});
+  CHECK((written(later, labels) == alone));
+  std::reverse(labels.begin(), labels.end());
+  CHECK((written(later, labels) == written(first, labels)));
 }
 
 TEST_CASE("labels are aligned to the left, the middle or the right of their place") {
