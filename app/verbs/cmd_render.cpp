@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl render SCENE -o DIR: simulate; write data, frames, animation and figures.
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <optional>
 
@@ -34,6 +36,14 @@ void refuse_another_film(OwnDirectory& output, const FilmFolder& folder, const A
                     "use --force to start over, or another -o");
   if (output.lock().shared() && !arguments.join && !folder.holds_this())
     throw FileError(output.path(), "another unfurl is writing another film into it; use another -o");
+}
+
+// The same words and exit code as the worker's that has written the film of a --join.
+int written_by_another(const std::filesystem::path& directory, const Simulation& run,
+                       const Diagnostics& diagnostics, const Arguments& arguments) {
+  if (interrupted()) return exit_interrupted;
+  if (arguments.json) std::cout << std::ifstream(directory / "summary.json").rdbuf() << std::flush;
+  return exit_code_of(run, diagnostics);
 }
 
 }  // namespace
@@ -85,7 +95,7 @@ int cmd_render(const Arguments& arguments) {
       return draw_frames(folder, shown, run, diagnostics, *context, arguments, memory, team.get()) &&
              all_frames(folder, shown, run);
     });
-    if (!writes) return interrupted() ? exit_interrupted : exit_code_of(run, diagnostics);
+    if (!writes) return written_by_another(directory, run, diagnostics, arguments);
   }
   RunAhead beside(arguments.threads);
   std::optional<RememberedExtremes> once(std::in_place);  // of the summary and of what is said

@@ -51,7 +51,7 @@ int cmd_stress(const Arguments& arguments) {
   const InterruptGuard guard;
   StudySession session(arguments, "stressing", study_identity("An atlas", scene), "stress.csv");
   const auto team = join_team(arguments, session);
-  std::optional<Stress> found;
+  std::optional<Worked<Stress>> found;
   {
     const StudyHooks hooks = session.hooks();
     Journal journal(team ? team->journal() : session.journal(), stress_columns(), stress_key_columns,
@@ -62,9 +62,13 @@ int cmd_stress(const Arguments& arguments) {
         [](const Stress& result) { return result.complete; });
   }
   if (!found) return nothing_to_write(arguments);
-  const Stress& stress = *found;
+  const Stress& stress = found->result;
   if (stress.complete && stress.cells.empty() && !stress.notes.empty())
     throw ReferenceError("none of the extremes has a reference; the first is " + stress.notes.front());
+  if (!found->writes) {
+    print_rows(arguments, true, cells_table(stress));
+    return exit_ok;
+  }
   if (stress.complete && arguments.study.extremes.empty())
     session.write("stress.csv", csv_text(cells_table(stress)));
   Report report{"Stability at the extremes: " + scene.title};

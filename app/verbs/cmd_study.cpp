@@ -122,7 +122,7 @@ int cmd_study(const Arguments& arguments) {
   const auto team = join_team(arguments, session);
   Journal earlier({}, study_columns(), study_key_columns, study_number_columns(), is_study_point);
   session.require_asked(earlier, [&](const auto& row) { return asks_for(plan, row); });
-  std::optional<Study> found;
+  std::optional<Worked<Study>> found;
   {
     Journal journal(team ? team->journal() : session.journal(), study_columns(), study_key_columns,
                     study_number_columns(), is_study_point, session.room_for_first());
@@ -132,7 +132,11 @@ int cmd_study(const Arguments& arguments) {
         [](const Study& result) { return result.complete; });
   }
   if (!found) return nothing_to_write(arguments);
-  const Study& study = *found;
+  const Study& study = found->result;
+  if (!found->writes) {
+    print_rows(arguments, true, points_table(study));
+    return exit_ok;
+  }
   if (study.complete) session.write("study.csv", csv_text(points_table(study)));
   std::vector<std::string> pictures;
   for (const Figure& figure :

@@ -230,15 +230,15 @@ std::string cure(const SweepPlan& plan, const Sweep& sweep, const Arguments& arg
   return "; these compute the others:" + missing_shards(arguments, lacking, count);
 }
 
-// None: another worker writes the results.
-std::optional<Sweep> compute(const SweepPlan& plan, StudySession& session, const StudyHooks& hooks,
-                             const Arguments& arguments, const std::string& identity, Team* team) {
+// None: a person interrupted the wait for others.
+std::optional<Worked<Sweep>> compute(const SweepPlan& plan, StudySession& session, const StudyHooks& hooks,
+                                     const Arguments& arguments, const std::string& identity, Team* team) {
   const auto finished = [&](const auto& row) { return plan.is_finished(row); };
   try {
     Journal earlier({}, plan.columns(), plan.axes.size(), plan.number_columns(), finished);
     session.require_asked(earlier, plan.asked());
     if (!arguments.study.merge.empty())
-      return merge_sweep(plan, journals_in(arguments.study.merge, identity));
+      return Worked<Sweep>{merge_sweep(plan, journals_in(arguments.study.merge, identity))};
     Journal journal(team ? team->journal() : session.journal(), plan.columns(), plan.axes.size(),
                     plan.number_columns(), finished, session.room_for_first());
     return alone_or_joined(
@@ -279,7 +279,11 @@ int cmd_sweep(const Arguments& arguments) {
   const auto team = join_team(arguments, session);
   const auto computed = compute(plan, session, session.hooks(), arguments, name, team.get());
   if (!computed) return nothing_to_write(arguments);
-  const Sweep& sweep = *computed;
+  const Sweep& sweep = computed->result;
+  if (!computed->writes) {
+    print_rows(arguments, true, sweep.table);
+    return code_of_answers(plan, sweep);
+  }
   for (const std::string& conflict : sweep.conflicts) std::cerr << "unfurl: warning: " << conflict << "\n";
   if (!sweep.moved.empty()) std::cerr << "unfurl: warning: " << sweep.moved << "\n";
   for (const std::string& warning : sweep.warnings) {

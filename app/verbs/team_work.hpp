@@ -68,29 +68,41 @@ inline void warn_of_damage(const Journal& journal) {
     std::cerr << "unfurl: warning: " << text << " and was not taken: what it stood for is computed anew\n";
 }
 
+// What is there when all is computed, and whether this worker is to write it.
+template <class Result>
+struct Worked {
+  Result result;
+  bool writes = true;
+};
+
 // What `run(journal, hooks)` finds over this process's journal, or with a team over its own and those of the
-// others, until `whole(result)`. None: another worker writes the results, or a person interrupted the wait.
+// others, until `whole(result)`; another worker than the one that writes has it when it is written. None: a
+// person interrupted the wait.
 template <class Run, class Whole>
 auto alone_or_joined(Team* team, const Arguments& arguments, Journal& journal, StudyHooks hooks,
-                     const Run& run, const Whole& whole) -> std::optional<decltype(run(journal, hooks))> {
+                     const Run& run, const Whole& whole)
+    -> std::optional<Worked<decltype(run(journal, hooks))>> {
+  using Result = decltype(run(journal, hooks));
   if (team) {
     StudyHooks shared = hooks;
     shared.team = team;
+    std::optional<Result> all;
     const bool writes = work_together(*team, arguments, [&] {
       journal.take_in(team->journals_of_others());
-      return whole(run(journal, shared));
+      return whole(all.emplace(run(journal, shared)));
     });
     warn_of_damage(journal);
-    if (!writes) return std::nullopt;
+    if (!writes && interrupted()) return std::nullopt;
+    if (!writes) return Worked<Result>{*std::move(all), false};
   } else {
     warn_of_damage(journal);
   }
-  return run(journal, hooks);
+  return Worked<Result>{run(journal, hooks)};
 }
 
-// The exit code where there is no result to write.
+// The exit code where a person interrupted the wait for others.
 inline int nothing_to_write(const Arguments& arguments) {
-  return interrupted() ? finish(false, arguments, "") : exit_ok;
+  return finish(false, arguments, "");
 }
 
 }  // namespace unfurl

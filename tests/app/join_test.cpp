@@ -156,4 +156,35 @@ TEST_CASE("results whose writer died are written by who waits for them") {
   CHECK_FALSE(fs::exists(dir / "out/sweep.md"));  // it was the other's to write
 }
 
+// Whoever writes the results, each worker of a script tells them, as one that works alone does: numbers of
+// sweeps follow from the scene, what a film's summary says from its file.
+TEST_CASE("a worker that leaves the results to another one tells them as JSON all the same") {
+  const ScratchDirectory dir;
+  const std::vector<std::vector<std::string>> commands = {
+      {"sweep", "pendulum", "--vary", "solver.end_time=0.1,0.2", "--measure", "max:kinetic_energy_J", "--dpi",
+       "40"},
+      {"study", "pendulum", "--set", "solver.end_time=0.2", "--steps", "0.05:0.025", "--repeats", "1",
+       "--methods", "rk4", "--dpi", "40"},
+      {"render", "pendulum", "--set", "solver.end_time=0.1", "--size", "64x48", "--fps", "10", "--dpi", "40",
+       "--set", "render.gif=false", "--set", "render.mp4=false"}};
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const std::string out = dir / ("out" + std::to_string(i));
+    const auto joined = commands[i] + std::vector<std::string>{"--quiet", "--json", "--join", "-o", out};
+    INFO(joined.front());
+    const ProgramResult first = run_program(joined);
+    REQUIRE(first.code == 0);
+    REQUIRE(first.out.find("{") == 0);
+    // Another worker is about to write them again, and has soon.
+    dir.write("out" + std::to_string(i) + "/join/results.1.lease", "somebody\n");
+    std::string words;
+    for (const auto& word : joined) words += "'" + word + "' ";
+    const std::string told = dir / ("told" + std::to_string(i));
+    const std::string command = "\"" UNFURL_PROGRAM "\" " + words + " > '" + told +
+                                "' & p=$!; sleep 1.5; kill -0 $p && echo > '" + out +
+                                "/join/results.1.done' && wait $p";
+    CHECK(std::system(("( " + command + " ) 2>/dev/null").c_str()) == 0);
+    CHECK(file_text(told) == first.out);
+  }
+}
+
 }  // namespace join_test
