@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/math/determined_rows.hpp"
-#include "core/math/linear_elimination.hpp"
+#include "core/math/row_dependence.hpp"
 #include "core/math/saddle_solver.hpp"
 #include "core/math/singular_values.hpp"
 
@@ -63,9 +63,9 @@ std::vector<int> dependent_rows(const SparseRows& G) {
   SaddleSolver solver(identity, clean);
   const bool held = solver.factorise(clean);
   if (held && solver.all_independent(weak)) return {};
-  LinearElimination left = eliminate(G, VectorXd::Zero(G.rows()), dependent_row);
-  if (left.least > doubtful || !held) return left.redundant;
-  return solver.dependent_rows(dependent_row, left.redundant);
+  RowDependence left = dependence_of_rows(G, dependent_row);
+  if (left.least > doubtful || !held) return left.rows;
+  return solver.dependent_rows(dependent_row, left.rows);
 }
 
 }  // namespace
