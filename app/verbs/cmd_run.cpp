@@ -50,7 +50,6 @@ bool in_parts(const Scene& scene, const Arguments& arguments) {
 // Singular poses are looked for beside the longest table and the diagnosis, which asks for them where it
 // needs them.
 Diagnostics judged(Simulation& run, const std::filesystem::path& directory, RunAhead& ahead) {
-  const auto waited_enough = [] { return interrupted_for(0.5); };
   std::vector<Event> poses;
   const TaskQueue::Scope scope(ahead.beside());
   ahead.beside().add([&] { poses = find_singular_poses(run.trajectory, waited_enough); });
@@ -80,16 +79,16 @@ int write_run(const Scene& scene, Simulation& run, const Arguments& arguments, O
 int write_end(const Scene& scene, UnfinishedRun& unfinished, Simulation& rest, std::size_t first,
               const Arguments& arguments, RunAhead& ahead) {
   ahead.beside().finish();
-  const bool stopped = rest.status == RunStatus::stopped;
-  Digest whole = stopped ? unfinished.interrupt(rest, first) : unfinished.finish(rest, first);
+  Digest whole = unfinished.finish(rest, first);
   Diagnostics& d = whole.diagnostics;
   receipt_errors({{"constraint_error_m", largest_magnitude(d.at("constraint_max_m").values)},
                   {"energy_balance_J", largest_magnitude(d.at("energy_balance_J").values)}});
   const std::string summary = write_data(arguments.output, scene, whole.run, d, as_typed(arguments.words),
                                          ahead, false, [&] { unfinished.take_places(); });
-  if (!stopped) unfinished.forget();
+  if (!unfinished.goes_on() || !holds_checkpoint(arguments.output)) unfinished.forget();
   report_run(whole.run, d, arguments);
-  if (stopped && !arguments.quiet) std::cerr << "unfurl: the same command goes on with it\n";
+  if (holds_checkpoint(arguments.output) && !arguments.quiet)
+    std::cerr << "unfurl: the same command goes on with it\n";
   if (arguments.json) std::cout << summary;
   return exit_code_of(whole.run, d);
 }

@@ -43,11 +43,11 @@ namespace {
 
 const auto started = std::chrono::steady_clock::now();  // the program
 
+}  // namespace
+
 bool waited_enough() {
   return interrupted_for(0.5);
 }
-
-}  // namespace
 
 Scene scene_of(const Arguments& arguments) {
   Scene scene = read_scene_file(find_scene(arguments.names.front()), arguments.overrides);

@@ -16,6 +16,9 @@
 
 namespace unfurl {
 
+// An interrupt that a run has not obeyed for half a second: what is not judged by then is left open.
+bool waited_enough();
+
 // The scene that the first word names, with the overrides.
 Scene scene_of(const Arguments& arguments);
 

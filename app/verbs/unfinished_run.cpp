@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/output/checkpoint_head.hpp"
+#include "core/diagnostics/peaks.hpp"
 #include "core/export/atomic_file.hpp"
 #include "core/export/checksum.hpp"
 
@@ -122,7 +123,7 @@ void UnfinishedRun::forget() {
 }
 
 void UnfinishedRun::add(Simulation& window, std::size_t first, std::size_t last) {
-  const Diagnostics d = digest_.add(window, first, last);
+  const Diagnostics d = digest_.add(window, first, last, waited_enough);
   const std::size_t good = first + digest_.trusted();
   tables_->add(window.trajectory, d, first, good);
   if (digest_.all_trusted() || digest_.trusted() > 0) good_ = tables_->sizes();
@@ -143,8 +144,10 @@ void UnfinishedRun::take(Stepper::Window window, Stepper& stepper, TaskQueue& be
 
 void UnfinishedRun::take(Part& part) {
   Simulation& run = part.window.run;
+  const LooksUntil end(waited_enough);
   add(run, part.window.first, part.window.last);
   digest_.settle();
+  if (digest_.cut()) return;
   t_ = part.t;
   RunTables::Sizes sizes = tables_->sizes();
   Archive archive;
@@ -178,7 +181,17 @@ Digest UnfinishedRun::whole(Simulation& rest) const {
 }
 
 Digest UnfinishedRun::finish(Simulation& rest, std::size_t first) {
-  add(rest, first, rest.trajectory.size());
+  const bool stopped = rest.status == RunStatus::stopped;
+  if (stopped) keep();
+  {
+    const LooksUntil end(waited_enough);
+    add(rest, first, rest.trajectory.size());
+  }
+  if (stopped || digest_.cut()) {
+    if (!stopped) keep();
+    copy_tables();
+    return whole(rest);
+  }
   if (!digest_.all_trusted()) tables_->cut(good_);
   tables_->flush_to_disk();
   tables_.reset();
@@ -186,9 +199,7 @@ Digest UnfinishedRun::finish(Simulation& rest, std::size_t first) {
 }
 
 // The tables themselves grow beyond what the checkpoint knows of them: they are cut when it is found.
-Digest UnfinishedRun::interrupt(Simulation& rest, std::size_t first) {
-  keep();
-  add(rest, first, rest.trajectory.size());
+void UnfinishedRun::copy_tables() {
   const RunTables::Sizes sizes = digest_.all_trusted() ? tables_->sizes() : good_;
   tables_->flush_to_disk();
   const std::uint64_t size[] = {sizes.series, sizes.trajectory, sizes.rod_forces};
@@ -201,13 +212,11 @@ Digest UnfinishedRun::interrupt(Simulation& rest, std::size_t first) {
     if (error) throw FileError(copy.target(), error.value());
     copy.complete();
   }
-  return whole(rest);
 }
 
 void UnfinishedRun::take_places() {
   make_room(written_, beside_, Unfinished::stays);
-  if (!copies_.empty())
-    return commit_together(std::array{copies_[0].get(), copies_[1].get(), copies_[2].get()});
+  if (goes_on()) return commit_together(std::array{copies_[0].get(), copies_[1].get(), copies_[2].get()});
   // Tables without a summary are those of a run that goes on (take_back()).
   move_into_place(folder(), tables, written_.directory(), [&] { written_.remove("summary.json"); });
   written_.remove("unfinished/checkpoint");

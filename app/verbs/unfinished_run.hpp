@@ -38,11 +38,11 @@ class UnfinishedRun {
   bool any() const { return tables_ != nullptr; }  // a part was taken or found
   // The part's diagnosis, rows and checkpoint are made `beside` what comes next; one part at a time.
   void take(Stepper::Window window, Stepper& stepper, TaskQueue& beside);
-  // All of the run; `rest`: what no part had.
+  // All of the run; `rest`: what no part had. Where an interrupt stopped it, or left states that were not
+  // judged, it can still go on from the last part that was.
   Digest finish(Simulation& rest, std::size_t first);
-  // The same of a run that was interrupted, which can still go on from its last part.
-  Digest interrupt(Simulation& rest, std::size_t first);
-  // After either: the tables get their places and, of a run that is done, the checkpoint goes. What is killed
+  bool goes_on() const { return !copies_.empty(); }
+  // After that: the tables get their places and, of a run that is done, the checkpoint goes. What is killed
   // between the two goes on all the same.
   void take_places();
   void forget();  // what was found
@@ -59,7 +59,8 @@ class UnfinishedRun {
     std::string stepper;  // archived
   };
   void take(Part& part);
-  void keep();  // as the last part left it
+  void keep();  // as the last part that was judged left it
+  void copy_tables();
   Digest whole(Simulation& rest) const;
 
   WrittenFiles& written_;

@@ -22,7 +22,8 @@ Diagnostics diagnose_states(const Simulation& run);
 // diagnose() of one window of a long run (simulate/parts.hpp). `known`: what the window before it found,
 // whose last states are of the model that this one begins with; then what this one found. goes_on: it is not
 // the last window.
-Diagnostics diagnose_window(const Simulation& window, bool goes_on, KnownUniqueness& known);
+Diagnostics diagnose_window(const Simulation& window, bool goes_on, KnownUniqueness& known,
+                            const std::function<bool()>& cancelled = {});
 
 // What the energy balance may be off by rounding alone, at every state of the run [J]. Coordinates are known
 // to some `levels` = 64 units of round-off of their largest, x; a force F works |F| levels ulp x along that,

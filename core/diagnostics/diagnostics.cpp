@@ -440,9 +440,10 @@ class StateTable {
   double first_energy_ = 0;
 };
 
-Diagnostics diagnosed(const Simulation& run, Look look, const ForceUniqueness* uniqueness) {
+Diagnostics diagnosed(const Simulation& run, Look look, const ForceUniqueness* uniqueness,
+                      const std::function<bool()>& cancelled = {}) {
   StateTable table(run, look, uniqueness, {});
-  table.fill({});
+  table.fill(cancelled);
   return table.finish(uniqueness);
 }
 
@@ -475,10 +476,11 @@ Diagnostics diagnose(const Simulation& run, const std::function<bool()>& cancell
   return table.finish(uniqueness ? &*uniqueness : nullptr);
 }
 
-Diagnostics diagnose_window(const Simulation& window, bool goes_on, KnownUniqueness& known) {
-  const ForceUniqueness uniqueness(window, known, goes_on);
-  known = uniqueness.known();
-  return diagnosed(window, Look::all, &uniqueness);
+Diagnostics diagnose_window(const Simulation& window, bool goes_on, KnownUniqueness& known,
+                            const std::function<bool()>& cancelled) {
+  std::optional<ForceUniqueness> uniqueness;
+  if (!cancelled || !cancelled()) known = uniqueness.emplace(window, known, goes_on).known();
+  return diagnosed(window, Look::all, uniqueness ? &*uniqueness : nullptr, cancelled);
 }
 
 Diagnostics diagnose_books(const Simulation& run) {

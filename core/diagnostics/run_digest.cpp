@@ -158,29 +158,43 @@ void RunDigest::add_events(const Simulation& window, double until) {
   }
 }
 
-Diagnostics RunDigest::add(Simulation& window, std::size_t first, std::size_t last) {
-  record_singular_poses(window);
+Diagnostics RunDigest::add(Simulation& window, std::size_t first, std::size_t last,
+                           const std::function<bool()>& cancelled) {
+  record_singular_poses(window, cancelled);
   add_events(window, window.trajectory.end_time());
-  Diagnostics d = diagnose_window(window, last < window.trajectory.size(), known_);
+  Diagnostics d = diagnose_window(window, last < window.trajectory.size(), known_, cancelled);
   count_on(d, first);
   ends_.clear();
   for (const Series& column : d.columns) ends_.push_back(column.values[last - 1]);
   all_ = with_rows(kept_, window, d, first, last);
   const GoodPart part = good_part(all_.run, all_.diagnostics);
   const std::size_t before = kept_.run.trajectory.size(), size = all_.run.trajectory.size();
-  trusted_ = std::max(part.states, before) - before;
-  if (first > 0 && trusted_ > 0 && look_at_seam(window, d, first, first + std::min<std::size_t>(trusted_, 2)))
+  const bool good = part.states == size - all_.diagnostics.left_open;  // of what was judged
+  trusted_ = (good ? size : std::max(part.states, before)) - before;
+  if (first > 0 && trusted_ > 0 && !cut() &&
+      looked([&] { return look_at_seam(window, d, first, first + std::min<std::size_t>(trusted_, 2)); }))
     all_ = with_rows(kept_, window, d, first, last);
-  if (part.states == size) {
+  if (good) {
     doubt_.clear();
   } else if (part.states > before || doubt_.empty()) {
     good_ = all_;
     keep_states(std::max<std::size_t>(part.states, 1), good_.run, good_.diagnostics);
-    note_rise(good_);
-    good_ = thinned(good_);
+    good_.diagnostics.left_open = 0;
+    if (!looked([&] { return note_rise(good_), good_ = thinned(good_), true; }))
+      good_.diagnostics.left_open = 1;
     doubt_ = part.text(all_.diagnostics);
   }
   return d;
+}
+
+// What `look` finds; where it is ended (LooksUntil) what tops the last states is left open.
+bool RunDigest::looked(const std::function<bool()>& look) {
+  try {
+    return look();
+  } catch (const LookedEnough&) {
+    all_.diagnostics.left_open = std::max<std::size_t>(all_.diagnostics.left_open, 1);
+    return false;
+  }
 }
 
 // Between the last state before the window and its first new one the motion may go beyond all that the digest
@@ -258,6 +272,7 @@ Digest RunDigest::with_rows(const Digest& before, const Simulation& window, cons
   rows.force_unique.conservativeResize(old + count, Eigen::NoChange);
   rows.axial_force.bottomRows(count) = d.axial_force.middleRows(static_cast<Index>(first), count);
   rows.force_unique.bottomRows(count) = d.force_unique.middleRows(static_cast<Index>(first), count);
+  rows.left_open += last - std::clamp(d.t.size() - d.left_open, first, last);
   for (std::size_t r = 0; r < rows.rod_unique.size(); ++r)
     rows.rod_unique[r] = static_cast<char>(rows.rod_unique[r] & d.rod_unique[r]);
   run.events = window.events;
@@ -287,7 +302,8 @@ bool RunDigest::worth_a_look(const Digest& all, const Series& column, double sig
 Digest RunDigest::thinned(const Digest& all) const {
   const Trajectory& trajectory = all.run.trajectory;
   const Diagnostics& d = all.diagnostics;
-  std::set<std::size_t> rows{0, d.t.size() - 1};
+  const std::size_t judged = d.t.size() - d.left_open;
+  std::set<std::size_t> rows{0, std::max<std::size_t>(judged, 1) - 1, d.t.size() - 1};
   Digest out = empty();
   out.diagnostics.found = d.found;
   for (const Series& column : d.columns)
@@ -319,6 +335,7 @@ Digest RunDigest::thinned(const Digest& all) const {
     rows.insert({before, std::min(before + 1, d.t.size() - 1)});
   }
   out.run.events = all.run.events;
+  out.diagnostics.left_open = static_cast<std::size_t>(std::distance(rows.lower_bound(judged), rows.end()));
   out.diagnostics.columns = d.columns;
   for (Series& column : out.diagnostics.columns) column.values.clear();
   out.diagnostics.rod_unique = d.rod_unique, out.diagnostics.rod_shown = d.rod_shown;
@@ -349,6 +366,7 @@ Digest RunDigest::whole(const Simulation& last_window) const {
   if (!doubt_.empty()) {
     if (trusted_ > 0) {
       keep_states(kept_.run.trajectory.size() + trusted_, out.run, out.diagnostics);
+      out.diagnostics.left_open = 0;
     } else {
       const Digest end = std::move(out);
       out = good_;
@@ -376,8 +394,9 @@ void RunDigest::note_rise(const Digest& rows) {
 
 void RunDigest::settle() {
   const RememberedExtremes once;
-  note_rise(all_);
-  kept_ = thinned(all_);
+  Digest thin = empty();
+  if (!looked([&] { return note_rise(all_), thin = thinned(all_), true; })) thin = thinned(all_);
+  kept_ = std::move(thin);
   all_ = empty();
 }
 

@@ -2,6 +2,7 @@
 // What a summary asks of a run whose states are not kept.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,13 @@ class RunDigest {
   RunDigest(std::shared_ptr<const Model> model, const SolverOptions& options);
 
   // The rows of a window, counted from the start of the run. Its states [first, last) are added to the
-  // digest; singular poses become events of the window and are told once by events().
-  Diagnostics add(Simulation& window, std::size_t first, std::size_t last);
+  // digest; singular poses become events of the window and are told once by events(). Once `cancelled` says
+  // so, for good, states are left open (Diagnostics::left_open), as they are where LooksUntil ends a look
+  // within steps.
+  Diagnostics add(Simulation& window, std::size_t first, std::size_t last,
+                  const std::function<bool()>& cancelled = {});
+  // Something was left open: what is settled then is for whole(), and not to go on from.
+  bool cut() const { return kept_.diagnostics.left_open + all_.diagnostics.left_open > 0; }
   // Of the states [first, last) of the last window, the beginning that can be trusted (judge()); where that
   // is not all, what comes after it may still make up for it.
   std::size_t trusted() const { return trusted_; }
@@ -47,6 +53,7 @@ class RunDigest {
                    std::size_t last) const;
   bool look_at_seam(const Simulation& window, const Diagnostics& d, std::size_t first, std::size_t end);
   Digest thinned(const Digest& all) const;
+  bool looked(const std::function<bool()>& look);
   bool worth_a_look(const Digest& all, const Series& column, double sign) const;
   void count_on(Diagnostics& d, std::size_t first);
   void add_events(const Simulation& window, double until);

@@ -3,12 +3,15 @@
 #include "core/diagnostics/run_digest.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "core/diagnostics/accuracy.hpp"
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/measures.hpp"
+#include "core/diagnostics/peaks.hpp"
 #include "core/diagnostics/rod_peaks.hpp"
 #include "core/export/summary.hpp"
 #include "core/scene/library.hpp"
@@ -394,6 +397,66 @@ TEST_CASE("what a long run that is cut says of forces without bound is of what i
     const Digest whole = from_checkpoint_to_checkpoint(w, model, scene);
     CHECK(whole.run.trajectory.end_time() == Approx(run.trajectory.end_time()).epsilon(0).margin(1e-9));
     CHECK(warnings_of(whole.run, whole.diagnostics) == expected);
+  }
+}
+
+// An interrupt comes while the second part is judged: its first states have the rows that they have without
+// one, to the bit, the others none, and the time between the two is what the run is said to be judged to.
+TEST_CASE("of a long run that is interrupted what was judged is kept, and how far that is is said") {
+  const Scene scene = read_scene_file(find_scene("four_bar"), {"solver.end_time=1", "solver.step=0.01"});
+  const auto model = build_model(scene);
+  Windows w = windows_of(scene, 30), same = windows_of(scene, 30);
+  REQUIRE(w.parts.size() >= 3);
+  RunDigest digest(model, scene.solver), whole(model, scene.solver);
+  constexpr int left_out =
+      25;  // of the 48 states that a window shows: each is asked for once, the last thing
+  int asked = 0, more = std::numeric_limits<int>::max();
+  const auto counts = [&] { return ++asked, false; };
+  const auto cancelled = [&] { return --more < 0; };
+  double until = -1;
+  for (std::size_t k = 0; k < w.parts.size(); ++k) {
+    Stepper::Window &part = w.parts[k], &other = same.parts[k];
+    asked = 0;
+    const Diagnostics all = whole.add(other.run, other.first, other.last, counts);
+    if (k == 1) more = asked - left_out;
+    const Diagnostics d = digest.add(part.run, part.first, part.last, cancelled);
+    const std::size_t judged = d.t.size() - d.left_open;
+    CHECK(digest.cut() == (k > 0));
+    if (k < 2) CHECK((judged > part.first && judged > 0));
+    if (k == 1) {
+      CHECK(judged < part.last);
+      until = d.t[judged - 1];
+    }
+    if (k > 1) CHECK(judged == 0);
+    for (std::size_t i = part.first; i < part.last; ++i)
+      for (const char* const column : {"kinetic_energy_J", "axial_force_max_N"}) {
+        const double x = d.at(column).values[i];
+        CHECK((i < judged ? x == all.at(column).values[i] : std::isnan(x)));
+      }
+    digest.settle(), whole.settle();
+    CHECK(digest.cut() == (k > 0));
+    CHECK(!whole.cut());
+  }
+  digest.add(w.rest, w.first, w.rest.trajectory.size(), cancelled);
+  w.rest.status = RunStatus::stopped;
+  const Digest left = digest.whole(w.rest);
+  CHECK(left.diagnostics.left_open > 0);
+  CHECK(left.diagnostics.t.size() - left.diagnostics.left_open > 1);
+  CHECK(left.diagnostics.t[left.diagnostics.t.size() - left.diagnostics.left_open - 1] == until);
+  CHECK(left.run.trajectory.end_time() == Approx(1));
+  CHECK(std::isnan(find_measure("peak_rod_force").value(left.run, left.diagnostics)));
+}
+
+TEST_CASE("a part whose peaks within steps are not looked for to the end is nothing to go on from") {
+  const Scene scene = read_scene_file(find_scene("four_bar"), {"solver.end_time=1", "solver.step=0.01"});
+  for (const bool ends : {false, true}) {
+    Windows w = windows_of(scene, 40);
+    RunDigest digest(build_model(scene), scene.solver);
+    Stepper::Window& part = w.parts.at(0);
+    digest.add(part.run, part.first, part.last);
+    const LooksUntil end(ends ? [] { return true; } : [] { return false; });
+    digest.settle();
+    CHECK(digest.cut() == ends);
   }
 }
 
