@@ -17,7 +17,8 @@ Diagnostics diagnose_books(const Simulation& run);
 Diagnostics diagnose_energies(const Simulation& run);
 
 // All but what is unique and what goes in or out, of which energies are the sums: those columns mean nothing.
-Diagnostics diagnose_states(const Simulation& run);
+// `reactions`: with those of supports, which are most of the columns where many nodes are held.
+Diagnostics diagnose_states(const Simulation& run, bool reactions);
 
 // diagnose() of one window of a long run (simulate/parts.hpp). `known`: what the window before it found,
 // whose last states are of the model that this one begins with; then what this one found. goes_on: it is not

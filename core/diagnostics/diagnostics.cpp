@@ -284,7 +284,7 @@ std::string label_in(const Structure& s, const Row& row) {
   return row.label;
 }
 
-enum class Look { energies, books, states, all };
+enum class Look { energies, books, motion, states, all };
 
 // The columns of a run, filled state by state.
 class StateTable {
@@ -301,7 +301,7 @@ class StateTable {
         forces_(run.trajectory, ahead.forces),
         fold_(run.trajectory.structure().deployment) {
     if (!books_) drives_.emplace(run.trajectory.model(), out_.columns);
-    if (!books_) reactions_.emplace(run.trajectory.model(), out_.columns);
+    if (!books_ && look != Look::motion) reactions_.emplace(run.trajectory.model(), out_.columns);
     first_own_ = out_.columns.size();
     if (!books_) add_own_columns(run.trajectory.structure(), out_);
     const auto rods = books_ ? Index{0} : static_cast<Index>(run.trajectory.structure().rods.size());
@@ -349,7 +349,7 @@ class StateTable {
     add_own_values(run_.trajectory.structure(), instant, out_.columns.data() + first_own_);
     drives_->append(*model_, *system_, state.t, q, v, lambda,
                     [&](std::size_t d) { return instant.flow.of_drives[d][i]; });
-    reactions_->append(*model_, *system_, state, q, v, acceleration_, lambda);
+    if (reactions_) reactions_->append(*model_, *system_, state, q, v, acceleration_, lambda);
   }
 
   void fill(const std::function<bool()>& cancelled) {
@@ -410,7 +410,7 @@ class StateTable {
     VectorXd doubt = forces_.large_doubt(i, lambda);
     sharing_->share(state.t, q, run_.trajectory.report(i).singular_event, lambda);
     if (doubt.size() > 0) {
-      if (look_ == Look::states) forces_.forget_beside(i, doubt, lambda, acceleration_);
+      if (look_ != Look::all) forces_.forget_beside(i, doubt, lambda, acceleration_);
       doubtful_[i] = std::move(doubt);
     }
     axial_forces(*model_, state, q, v, lambda, force_);
@@ -491,10 +491,10 @@ Diagnostics diagnose_energies(const Simulation& run) {
   return diagnosed(run, Look::energies, nullptr);
 }
 
-Diagnostics diagnose_states(const Simulation& run) {
+Diagnostics diagnose_states(const Simulation& run, bool reactions) {
   std::optional<ForceUniqueness> uniqueness;
   if (any_elastic(run.trajectory.structure())) uniqueness.emplace(run);
-  return diagnosed(run, Look::states, uniqueness ? &*uniqueness : nullptr);
+  return diagnosed(run, reactions ? Look::states : Look::motion, uniqueness ? &*uniqueness : nullptr);
 }
 
 }  // namespace unfurl

@@ -2,6 +2,7 @@
 #include "core/diagnostics/motion_samples.hpp"
 
 #include <memory>
+#include <string>
 
 #include "core/diagnostics/books.hpp"
 #include "core/diagnostics/peaks.hpp"
@@ -39,12 +40,27 @@ const MotionSamples::Sample& MotionSamples::keep(Key key, Sample sample) {
   return kept;
 }
 
-const Diagnostics& MotionSamples::of(const Simulation& piece, bool energies) {
-  const auto look = [&] { return energies ? diagnose_energies(piece) : diagnose_states(piece); };
-  if (!pieces_.contains(&piece)) return last_found_ = look();
-  const auto known = found_.find({&piece, energies});
-  return known != found_.end() ? known->second
-                               : found_.emplace(std::pair(&piece, energies), look()).first->second;
+namespace {
+
+Diagnostics judged_as(const Simulation& piece, MotionSamples::Of what) {
+  return what == MotionSamples::Of::energies ? diagnose_energies(piece)
+                                             : diagnose_states(piece, what == MotionSamples::Of::reactions);
+}
+
+}  // namespace
+
+const Diagnostics& MotionSamples::of(const Simulation& piece, Of what) {
+  if (!pieces_.contains(&piece)) return last_found_ = judged_as(piece, what);
+  const auto known = found_.find({&piece, what});
+  return known != found_.end()
+             ? known->second
+             : found_.emplace(std::pair(&piece, what), judged_as(piece, what)).first->second;
+}
+
+MotionSamples::Of table_of(const Series& column) {
+  if (column.unit == "J") return MotionSamples::Of::energies;
+  const bool reaction = column.name.find(".reaction_") != std::string::npos;
+  return reaction ? MotionSamples::Of::reactions : MotionSamples::Of::motion;
 }
 
 bool of_the_state(const Series& column) {
@@ -81,10 +97,10 @@ void move_onto_constraints(const Model& model, State& state) {
   project(model.system, state);
 }
 
-const Diagnostics& judged_piece(const Simulation& piece, bool energies, Diagnostics& made) {
+const Diagnostics& judged_piece(const Simulation& piece, MotionSamples::Of what, Diagnostics& made) {
   if (looked_enough && looked_enough()) throw LookedEnough();
-  if (MotionSamples* const samples = remembered_samples()) return samples->of(piece, energies);
-  return made = energies ? diagnose_energies(piece) : diagnose_states(piece);
+  if (MotionSamples* const samples = remembered_samples()) return samples->of(piece, what);
+  return made = judged_as(piece, what);
 }
 
 }  // namespace unfurl

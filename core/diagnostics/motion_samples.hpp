@@ -30,8 +30,9 @@ class MotionSamples {
   const Sample* find(const Key& key) const;
   // The sample, kept where there is room: of large structures a few.
   const Sample& keep(Key key, Sample sample);
-  // diagnose_states(), or diagnose_energies(), of a piece.
-  const Diagnostics& of(const Simulation& piece, bool energies);
+  // What is asked of a piece: diagnose_energies(), or diagnose_states() without or with reactions.
+  enum class Of { energies, motion, reactions };
+  const Diagnostics& of(const Simulation& piece, Of what);
   // project(), of one model after another.
   void move_onto_constraints(const Model& model, State& state);
 
@@ -43,7 +44,7 @@ class MotionSamples {
  private:
   std::map<Key, Sample> kept_;
   std::set<const Simulation*> pieces_;  // of those
-  std::map<std::pair<const Simulation*, bool>, Diagnostics> found_;
+  std::map<std::pair<const Simulation*, Of>, Diagnostics> found_;
   std::size_t numbers_ = 0;     // in them
   std::optional<Sample> last_;  // for which there is no room
   Diagnostics last_found_;
@@ -60,6 +61,8 @@ bool of_the_state(const Series& column);
 const Simulation& inside_step(const Simulation& run, std::size_t k,
                               std::optional<MotionSamples::Sample>& made);
 // MotionSamples::of() of those, or `made` where there are none.
-const Diagnostics& judged_piece(const Simulation& piece, bool energies, Diagnostics& made);
+const Diagnostics& judged_piece(const Simulation& piece, MotionSamples::Of what, Diagnostics& made);
+// Which of these tells a column.
+MotionSamples::Of table_of(const Series& column);
 
 }  // namespace unfurl

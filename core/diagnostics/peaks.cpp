@@ -388,7 +388,7 @@ PeakInMotion looked_for_extreme(const Simulation& run, const Diagnostics& d, std
   };
   const StateValues values = [&](const Simulation& piece) {
     Diagnostics made;
-    std::vector<double> out = signed_values(judged_piece(piece, column->unit == "J", made).at(name).values);
+    std::vector<double> out = signed_values(judged_piece(piece, table_of(*column), made).at(name).values);
     if (name == "fold_angle_rad") count_on(run.trajectory, piece, signed_values(column->values), 2 * pi, out);
     if (name == "fold_angle_deg") count_on(run.trajectory, piece, signed_values(column->values), 360, out);
     return out;
@@ -445,7 +445,7 @@ VectorXd rod_forces_within_step(const Simulation& run, double t) {
       if (t < around->end())
         around->sample({t}, [&](const Simulation& piece) {
           Diagnostics made;
-          forces = judged_piece(piece, false, made).axial_force.row(0).transpose();
+          forces = judged_piece(piece, MotionSamples::Of::motion, made).axial_force.row(0).transpose();
           return std::vector<double>(piece.trajectory.size());
         });
     }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/diagnostics/motion_samples.hpp"
 #include "core/diagnostics/peaks.hpp"
 #include "core/diagnostics/reactions.hpp"
 #include "tests/support/number.hpp"
@@ -123,6 +124,33 @@ end_time = 0.1
   CHECK(peaks[0].unique);
   CHECK(peaks[1].force_N == 6);
   CHECK(peaks[1].t == d.t[5]);
+}
+
+// Reactions ask for a solution of their own, and of a structure on many supports for most of the columns.
+TEST_CASE("within steps reactions are found where they are asked for, and all else is the same to the bit") {
+  const Simulation run = testing::run_scene(
+      "[structure]\nkind = 'custom'\n"
+      "nodes = [{name = 'A', position = [0, 0, 0], fixed = true}, {name = 'B', position = [1, 0, 0]},\n"
+      "         {name = 'C', position = [1, 1, 0], mass = 0.3}]\n"
+      "rods = [{nodes = ['A', 'B'], mass = 1}, {nodes = ['B', 'C'], mass = 1}]\n"
+      "[[constraints]]\nkind = 'plane'\nnodes = ['B', 'C']\nnormal = [0, 0, 1]\n"
+      "[gravity]\nacceleration = [0, -9.81, 0]\n[solver]\nstep = 0.02\nend_time = 0.2\n");
+  using Of = MotionSamples::Of;
+  Diagnostics made, more;
+  judged_piece(run, Of::motion, made), judged_piece(run, Of::reactions, more);
+  std::size_t reactions = 0;
+  for (const Series& column : more.columns) {
+    const bool reaction = table_of(column) == Of::reactions;
+    CHECK(reaction == (column.name.find("reaction") != std::string::npos));
+    CHECK(reaction == (made.find(column.name) == nullptr));
+    reactions += reaction ? 1 : 0;
+    if (reaction) continue;
+    const std::vector<double>& x = made.at(column.name).values;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      CHECK((x[i] == column.values[i] || (std::isnan(x[i]) && std::isnan(column.values[i]))));
+  }
+  CHECK(reactions == 5);  // of A; that planes keep it flat holds no node
+  CHECK(made.axial_force == more.axial_force);
 }
 
 }  // namespace reaction_dips_test
