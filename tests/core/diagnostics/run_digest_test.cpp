@@ -454,7 +454,7 @@ TEST_CASE("a part whose peaks within steps are not looked for to the end is noth
     RunDigest digest(build_model(scene), scene.solver);
     Stepper::Window& part = w.parts.at(0);
     digest.add(part.run, part.first, part.last);
-    const LooksUntil end(ends ? [] { return true; } : [] { return false; });
+    const LooksUntil end(ends ? +[] { return true; } : +[] { return false; });
     digest.settle();
     CHECK(digest.cut() == ends);
   }
