@@ -192,8 +192,9 @@ void PathMotion::refuse_turn_at_dead_centre(double latest) const {
   constexpr int parts = 8;
   constexpr double dead = 1e-4;  // of a slope; half of its square is left of the way to the dead centre
   const auto rate = [this](double t) { return drive_.target.derivative(1, t); };
+  const auto edge = [&](int k) { return k == parts ? latest : t_ + k * (latest - t_) / parts; };
   for (int k = 0; k < parts; ++k) {
-    double a = t_ + k * (latest - t_) / parts, b = k + 1 == parts ? latest : a + (latest - t_) / parts;
+    double a = edge(k), b = edge(k + 1);  // of two parts the same to the bit
     if (!(rate(a) * rate(b) <= 0) || (rate(a) == 0 && rate(b) == 0)) continue;
     for (int halves = 0; halves < 60; ++halves) {
       const double middle = 0.5 * (a + b);

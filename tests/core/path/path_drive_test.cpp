@@ -95,6 +95,20 @@ TEST_CASE("a drive beyond what the structure can reach is refused where it gets 
   }
 }
 
+// A wave whose top is the straight pose, 1/4 of a period behind its beginning and within a step: the rods go
+// on to the other side there, where the path has another branch.
+TEST_CASE("a drive that turns round in a dead centre is refused at the time of that") {
+  for (const double frequency : {0.4, 0.26, 0.7}) {
+    CAPTURE(frequency);
+    const double start = std::sqrt(10.0);  // of B-D
+    const std::string said =
+        refusal(driven({"motion=\"sine\"", "amplitude=" + number(4 - start), "frequency=" + number(frequency),
+                        "solver.step=0.1", "solver.end_time=1.5"}));
+    CHECK_THAT(said, Catch::Contains("turns round in a dead centre"));
+    CHECK_THAT(said, Catch::Contains(number(0.25 / frequency).substr(0, 5)));
+  }
+}
+
 // From one time of the grid to the next over more than a piece of the path, and there and back.
 TEST_CASE("a drive may go far in a step") {
   for (const double step : {0.01, 0.2, 1.0}) {
