@@ -132,16 +132,27 @@ std::unique_ptr<ConstraintBlock> measure_block(const Structure& structure) {
     const double own = angle ? row_arm(structure, c.measure) : length, scale = angle ? own : 1.0;
     double terms = 1;  // a row of large coefficients is as large, where these have no unit
     const auto turns = [](const MeasureTerm& term) { return unfurl::is_angle(term.measure); };
+    const auto distance = [&](const Measure& between) {
+      const auto at = [&](std::size_t k) {
+        return structure.nodes[static_cast<std::size_t>(between.nodes[k])].position;
+      };
+      return (at(1) - at(0)).norm();
+    };
     const auto rotor = [&](const MeasureTerm& term) {
       return term.measure.kind == MeasureKind::coordinate &&
              structure.nodes[static_cast<std::size_t>(term.measure.nodes[0])].ghost;
     };
     const bool turns_rotor =  // whose coordinate is an angle, beside that of its joint
         std::ranges::any_of(c.measure.terms, rotor) && std::ranges::any_of(c.measure.terms, turns);
+    double sum = 0;  // of lengths, as of a cable's: known to what rounding it leaves
     if (angle || std::ranges::none_of(c.measure.terms, turns))
-      for (const MeasureTerm& term : c.measure.terms) terms = std::max(terms, std::abs(term.coefficient));
+      for (const MeasureTerm& term : c.measure.terms) {
+        terms = std::max(terms, std::abs(term.coefficient));
+        if (term.measure.kind == MeasureKind::length)
+          sum += std::abs(term.coefficient) * distance(term.measure);
+      }
     rows.push_back({c.name, static_cast<int>(i), std::move(measure), c.target, scale,
-                    terms * (turns_rotor ? 1.0 : own), followed[i]});
+                    std::max(terms * (turns_rotor ? 1.0 : own), sum), followed[i]});
   }
   if (rows.empty()) return nullptr;
   return std::make_unique<MeasureRows>(std::move(rows));
