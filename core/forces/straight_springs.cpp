@@ -98,6 +98,8 @@ void StraightSprings::derivatives(const double* q, const double* v, ForceDerivat
     const Mat3 along = at.u * at.u.transpose();
     const Mat3 hessian = at.s > 0 ? Mat3((Mat3::Identity() - along) / at.s) : Mat3(Mat3::Zero());
     Mat3 block = -at.N * hessian - (m.stiffness * at.pull.share + c * at.pull.bend * at.rate) * along;
+    // In proportion to x_b - x_a, at one place too.
+    if (m.rest == 0 && !m.one_sided && !(c > 0)) block = -m.stiffness * Mat3::Identity();
     if (c > 0) {
       const Vec3 turned = hessian * (node_vector(v, m.b) - node_vector(v, m.a));
       block -= c * at.pull.share * at.u * turned.transpose();

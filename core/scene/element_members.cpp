@@ -336,10 +336,21 @@ bool MemberFinder::angle_is_defined(const SceneElement& element, const Measure& 
   return true;
 }
 
+namespace {
+
+// Of the free length 0, without a damper: it pulls with k d, which needs no direction.
+bool pulls_in_proportion(const SceneElement& e) {
+  return e.kind == "spring" && e.values.real("free_length") == 0 && e.values.real("damping") == 0 &&
+         !e.values.boolean("tension_only");
+}
+
+}  // namespace
+
 std::optional<Measure> length_of(const SceneElement& element, MemberFinder& find) {
   Measure measure;
   measure.nodes = find.nodes(element, false);
   if (measure.nodes.size() != 2) return {};
+  if (pulls_in_proportion(element)) return measure;
   if (!find.apart(element, "nodes", measure.nodes[0], measure.nodes[1])) return {};
   return measure;
 }
