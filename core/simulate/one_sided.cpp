@@ -380,11 +380,8 @@ void OneSided::measure(const Model& model, const State& state, bool forces, Prob
   if (forces && holds) measure_held(model, state, probe);
 }
 
-std::shared_ptr<const Model> OneSided::lock_held(const Model& base, double t) {
+std::shared_ptr<const Model> OneSided::stop_reels(const Model& base, double t) {
   Structure structure = base.structure;
-  std::set<std::size_t> locked = held();
-  std::erase_if(locked, [&](std::size_t i) { return stops_[i].reeled; });  // the winch stops
-  stops_.hold(locked, structure);
   stops_.stop_reels(t);
   const auto still = [t](const TimeFunction& law) {
     TimeFunction constant;
@@ -401,7 +398,7 @@ std::shared_ptr<const Model> OneSided::lock_held(const Model& base, double t) {
   };
   std::for_each(structure.forces.begin(), structure.forces.end(), stop);
   for (Cable& cable : cables_) stop(cable.law);
-  std::fill_n(active_.begin(), stops_.size(), false);
+  for (std::size_t i = 0; i < stops_.size(); ++i) active_[i] = active_[i] && !stops_[i].reeled;
   System system(structure, eliminate_linear_);
   return std::make_shared<const Model>(Model{std::move(structure), std::move(system)});
 }

@@ -60,7 +60,6 @@ class OneSided {
   // A held stop, a cable that pulls, what sticks, a motor that gives less than it is asked for.
   bool active(std::size_t i) const { return active_[i]; }
   bool any_active() const;                           // what is not as in the model without any of it
-  bool any_held() const { return !held().empty(); }  // stops
   bool any_reeled() const;                           // cables that are paid out or drawn in
   const Stops& stops() const { return stops_; }
   // "leaves stop NAME", "NAME pulls", ...: that the mode has begun; of friction, for each that acts there.
@@ -144,9 +143,9 @@ class OneSided {
   std::shared_ptr<const Model> model(const Model& base) const;
   // `base` with cables in their modes, all else free.
   Model without_holds(const Model& base) const;
-  // `base` with the held stops as constraints for good, which leaves them free here. Reels stop at their
-  // length at t instead.
-  std::shared_ptr<const Model> lock_held(const Model& base, double t);
+  // `base` with its reels at their length at t for good; cables that do not stretch are none of the held
+  // then.
+  std::shared_ptr<const Model> stop_reels(const Model& base, double t);
 
  private:
   static constexpr double rounded_share = 0.01;

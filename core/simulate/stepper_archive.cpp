@@ -44,12 +44,12 @@ Stepper::Window Stepper::Loop::take_window(std::size_t around) {
   return window;
 }
 
-void Stepper::Loop::lock_held() {
+void Stepper::Loop::stop_reels() {
   Archive sides;
   sides_.archive(sides);
   locked_sides_ = sides.bytes();
   locked_at_ = now().t;
-  base_ = sides_.lock_held(*base_, locked_at_);
+  base_ = sides_.stop_reels(*base_, locked_at_);
 }
 
 // What a stepper that was archived does not know either.
@@ -95,7 +95,7 @@ void Stepper::Loop::archive_models(Archive& archive) {
   if (archive.reading() && !locked_sides_.empty()) {
     Archive sides(locked_sides_);
     sides_.archive(sides);
-    base_ = sides_.lock_held(*base_, locked_at_);
+    base_ = sides_.stop_reels(*base_, locked_at_);
   }
   if (archive.reading() && latched_) base_ = latched_model(*base_, run_.options.eliminate_linear);
   if (archive.reading()) hold_nodes(held);

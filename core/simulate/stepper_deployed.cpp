@@ -449,11 +449,11 @@ bool Stepper::Loop::deployed(State& event, Probe& to, double h) {
 }
 
 // Lock the structure and go on with it: two states at this time, before and after the impulse. What rests
-// on a stop is locked there.
+// on a stop may leave it, then and later.
 bool Stepper::Loop::latch() {
   std::vector<bool> pulled;
   for (std::size_t i = 0; i < sides_.stops().size(); ++i) pulled.push_back(sides_.active(i));
-  if (sides_.any_held() || sides_.any_reeled()) lock_held();
+  if (sides_.any_reeled()) stop_reels();
   const bool gives = latch_gives(base_->structure);
   // What is touched in passing is a dead centre of the measure, which holding it does not hold.
   VectorXd v(system().coordinates());
@@ -483,7 +483,10 @@ bool Stepper::Loop::latch() {
     if (sides_.is_cable(i) || sides_.is_motor(i))
       std::ranges::copy(sides_.events(i, change.state.t), std::back_inserter(run_.events));
   set_model(sides_.any_active() ? sides_.model(*base_) : base_, change.state, true);
-  const double taken = locked.energy_lost * run_.trajectory.structure().sectors;
+  double taken = locked.energy_lost;
+  for (const ModeChange::Impact& impact : change.impacts)
+    if (impact.held && sides_.active(impact.stop)) taken += impact.energy_lost;  // pressed on it by the latch
+  taken *= run_.trajectory.structure().sectors;
   run_.events.push_back(
       {.name = "latched", .t = now().t, .energy_lost = gives ? 0.0 : taken, .kind = "latch"});
   return true;

@@ -364,7 +364,7 @@ class Stepper::Loop {
   }
 
   void enter_pushed();
-  void lock_held();
+  void stop_reels();
   void forget();
   void archive_models(Archive& archive);
   void archive_states(Archive& archive);
