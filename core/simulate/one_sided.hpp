@@ -59,8 +59,8 @@ class OneSided {
   }
   // A held stop, a cable that pulls, what sticks, a motor that gives less than it is asked for.
   bool active(std::size_t i) const { return active_[i]; }
-  bool any_active() const;                           // what is not as in the model without any of it
-  bool any_reeled() const;                           // cables that are paid out or drawn in
+  bool any_active() const;  // what is not as in the model without any of it
+  bool any_reeled() const;  // cables that are paid out or drawn in
   const Stops& stops() const { return stops_; }
   // "leaves stop NAME", "NAME pulls", ...: that the mode has begun; of friction, for each that acts there.
   std::vector<Event> events(std::size_t i, double t) const;
