@@ -6,7 +6,8 @@
 namespace unfurl {
 
 // Colours for values, told apart with every kind of colour blindness and by lightness.
-Color diverging_color(double x);  // x from -1 (blue) by 0 (grey, told from pale and from dark grounds) to 1 (red); Moreland 2009
+// x from -1 (blue) by 0 (a grey that is told from pale and from dark grounds) to 1 (red); Moreland 2009.
+Color diverging_color(double x);
 Color sequential_color(
     double x);  // x from 0 (dark violet) to 1 (yellow); viridis, Smith and van der Walt 2015
 
