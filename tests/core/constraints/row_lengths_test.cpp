@@ -47,8 +47,10 @@ TEST_CASE("rows of measures are as large as what they sum up") {
   const Structure s = testing::table_structure();  // rods of 1.5 and 2 m
   const double ab = distance(s, 0, 1), ac = distance(s, 0, 2), bd = distance(s, 1, 3), cd = distance(s, 2, 3);
   CHECK(length_of_row(s, length_of(0, 3)) == Approx(1.75));
-  CHECK(length_of_row(s, {{2.6, length_of(0, 3)}, {-3.7, length_of(1, 2)}}) == Approx(3.7 * 1.75));
-  CHECK(length_of_row(s, {{-0.6, length_of(0, 3)}, {0.7, length_of(1, 2)}}) == Approx(1.75));
+  const double ad = distance(s, 0, 3), bc = distance(s, 1, 2);
+  CHECK(length_of_row(s, {{2.6, length_of(0, 3)}, {-3.7, length_of(1, 2)}}) == Approx(2.6 * ad + 3.7 * bc));
+  CHECK(length_of_row(s, {{-0.6, length_of(0, 3)}, {0.7, length_of(1, 2)}}) == Approx(0.6 * ad + 0.7 * bc));
+  CHECK(length_of_row(s, {{-0.1, length_of(0, 3)}, {0.1, length_of(1, 2)}}) == Approx(1.75));
   CHECK(length_of_row(s, angle_of(1, 0, 2)) == Approx(std::min(ab, ac)));
   const double shortest = std::min({ab, ac, bd, cd});
   for (const auto& [one, two] :
