@@ -9,16 +9,24 @@
 #include "core/structure/measure.hpp"
 
 namespace unfurl {
+namespace {
+
+// From one of a measure's nodes to another one, at t = 0 [m].
+double edge_of(const Structure& structure, const Measure& measure, std::size_t a, std::size_t b) {
+  const auto at = [&](std::size_t k) -> const Vec3& {
+    return structure.nodes[static_cast<std::size_t>(measure.nodes[k])].position;
+  };
+  return (at(b) - at(a)).norm();
+}
+
+}  // namespace
 
 double row_arm(const Structure& structure, const Measure& measure) {
   constexpr double none = 1e-9;  // of that
   const double whole = reference_length(structure);
   double shortest = std::numeric_limits<double>::infinity();
   const auto edge = [&](std::size_t a, std::size_t b) {
-    const auto at = [&](std::size_t k) -> const Vec3& {
-      return structure.nodes[static_cast<std::size_t>(measure.nodes[k])].position;
-    };
-    if (const double length = (at(b) - at(a)).norm(); length > none * whole)
+    if (const double length = edge_of(structure, measure, a, b); length > none * whole)
       shortest = std::min(shortest, length);
   };
   if (measure.kind == MeasureKind::angle || measure.kind == MeasureKind::dihedral) edge(0, 1), edge(2, 3);
@@ -132,12 +140,6 @@ std::unique_ptr<ConstraintBlock> measure_block(const Structure& structure) {
     const double own = angle ? row_arm(structure, c.measure) : length, scale = angle ? own : 1.0;
     double terms = 1;  // a row of large coefficients is as large, where these have no unit
     const auto turns = [](const MeasureTerm& term) { return unfurl::is_angle(term.measure); };
-    const auto distance = [&](const Measure& between) {
-      const auto at = [&](std::size_t k) {
-        return structure.nodes[static_cast<std::size_t>(between.nodes[k])].position;
-      };
-      return (at(1) - at(0)).norm();
-    };
     const auto rotor = [&](const MeasureTerm& term) {
       return term.measure.kind == MeasureKind::coordinate &&
              structure.nodes[static_cast<std::size_t>(term.measure.nodes[0])].ghost;
@@ -149,7 +151,7 @@ std::unique_ptr<ConstraintBlock> measure_block(const Structure& structure) {
       for (const MeasureTerm& term : c.measure.terms) {
         terms = std::max(terms, std::abs(term.coefficient));
         if (term.measure.kind == MeasureKind::length)
-          sum += std::abs(term.coefficient) * distance(term.measure);
+          sum += std::abs(term.coefficient) * edge_of(structure, term.measure, 0, 1);
       }
     rows.push_back({c.name, static_cast<int>(i), std::move(measure), c.target, scale,
                     std::max(terms * (turns_rotor ? 1.0 : own), sum), followed[i]});
