@@ -89,6 +89,11 @@ bool Index1::evaluate(const State& state, MutVec acceleration, MutVec lambda) {
   return assemble(state.t, state.z, state.w, state.tension) && solve(state.t, state.w, acceleration, lambda);
 }
 
+void Index1::accelerate(const ConstVec& f, MutVec acceleration) {
+  VectorXd lambda(bias_.size());
+  saddle_.solve(f, VectorXd::Zero(bias_.size()), acceleration, lambda, refinements());
+}
+
 bool Index1::evaluate_at_rest(State state, MutVec acceleration, MutVec lambda) {
   state.w.setZero(state.z.size());
   if (!assemble(state.t, state.z, state.w, state.tension)) return false;

@@ -42,6 +42,8 @@ class Index1 {
   // The same as evaluate() at a state. What rods that give pull with is what the state says, where its step
   // did not resolve them and their lengths do not tell.
   bool evaluate(const State& state, MutVec acceleration, MutVec lambda);
+  // What forces f [N] more would add to the last acceleration, the rows as they are.
+  void accelerate(const ConstVec& f, MutVec acceleration);
   // The same at rest in the state's pose, for good: G a = 0, whatever drives and warming do then.
   bool evaluate_at_rest(State state, MutVec acceleration, MutVec lambda);
   // Where G has lost rank: the multipliers that the equations determine, next to those given, of which the

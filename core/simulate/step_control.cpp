@@ -13,6 +13,9 @@ namespace {
 // Steps that alternate about what is wanted by more than this factor do so to the end: a start anew.
 constexpr double out_of_step = 1.5;
 
+// So many times what swings is sorted by its frequency.
+constexpr int rounds = 4;
+
 }  // namespace
 
 StepControl::StepControl(const Structure& structure, const System& system, const SolverOptions& options)
@@ -28,8 +31,7 @@ StepControl::StepControl(const Structure& structure, const System& system, const
       q_(system.coordinates()),
       v_(system.coordinates()),
       a_(system.coordinates()),
-      f_(system.coordinates()),
-      moving_mass_(system.moving_mass()) {}
+      f_(system.coordinates()) {}
 
 // What a drive moves now or soon; a stop that holds, friction that sticks and what is held do not.
 bool StepControl::driven(double t) const {
@@ -43,51 +45,63 @@ bool StepControl::driven(double t) const {
   return false;
 }
 
-// w . K w over w . M w for x = w or h_0 w', whichever way the energy is, of forces that vary with the pose,
-// damped by as much of them as varies with rates; rods that give are left to methods that stop their waves.
-// Nothing where a swing is too small to matter: with r = K x its frequency is (r . M^-1 r / x . r)^1/2, and
-// its amplitude max |r_i| / m_i over the third power of that for x = w, over the fourth for x = w'.
+// Of the swings in w and h_0 w' (whichever way the energy is) the fastest that is larger than `matters`: with
+// x <- M^-1 K x along the constraints each has omega^2 as much of the next x, so that some rounds bring out
+// what is light, beside heavy ones that are slower or stretch nothing. K is of forces that vary with the
+// pose, and damps by as much of them as varies with rates; rods that give are left to methods that stop their
+// waves, and hold nothing here. The amplitude is max |x_k+1| over omega^(2 k + 3) for x_0 = w, and omega^(2 k
+// + 4) for w'.
 StepControl::Swing StepControl::swing(const State& state) {
   constexpr double small = 1e-6;    // of a length, of a rate: rounding leaves 1e-10 of a stretch
   constexpr double matters = 1e-6;  // of a length, an amplitude
   if (system_.constant_forces() || bends_ || driven(state.t)) return {};  // what is driven swings not
-  const VectorXd still = VectorXd::Zero(system_.elastic_rods() ? std::ssize(system_.giving_rods()) : 0);
+  const bool elastic = system_.elastic_rods();
+  const VectorXd still = VectorXd::Zero(elastic ? std::ssize(system_.giving_rods()) : 0);
   const auto add = [&](const VectorXd& q, const VectorXd& v, double scale) {
-    if (system_.elastic_rods())
+    if (elastic)
       system_.add_other_force(state.t, q, v, still, scale, f_);
     else
       system_.add_applied_force(state.t, q, v, scale, f_);
   };
-  double stiffness = 0, damping = 0, mass = 0, square_of_force = 0, most[2] = {};
-  const auto frequency = [&] {
-    const double square = stiffness / mass - std::pow(0.5 * damping / mass, 2);
-    return square > 0 ? std::sqrt(square) : 0.0;
-  };
-  VectorXd r(state.w.size());
-  const auto look_along = [&](const VectorXd& x, const VectorXd& w, double weight, double& largest) {
-    const double size = x.lpNorm<Eigen::Infinity>();
-    if (!(size > 0)) return;
+  const Index n = state.w.size();
+  VectorXd along(q_.size());
+  const auto stretched = [&](const VectorXd& x) -> VectorXd {  // K x
+    system_.expand_rate(x, along);
+    const double size = along.lpNorm<Eigen::Infinity>();
+    if (!(size > 0)) return VectorXd::Zero(n);
     const double d = small * length_ / size;
     f_.setZero();
-    add(q_ + d * x, v_, -1), add(q_ - d * x, v_, 1);
-    stiffness += weight * x.dot(f_) / (2 * d);
+    add(q_ + d * along, v_, -1), add(q_ - d * along, v_, 1);
+    VectorXd r(n);
     system_.reduce_force(f_, r);
-    const VectorXd a = (r.array() / moving_mass_.array()) / (2 * d);
-    square_of_force += weight * r.dot(a) / (2 * d);
-    largest = a.lpNorm<Eigen::Infinity>();
-    f_.setZero();
-    add(q_, v_ + x, -1), add(q_, v_ - x, 1);
-    damping += weight * x.dot(f_) / 2;
-    mass += weight * 2 * system_.kinetic_energy(w);
+    return r / (2 * d);
   };
-  look_along(v_, state.w, 1, most[0]);
-  const double of_rates = frequency();
-  look_along(a_, acceleration_, largest_ * largest_, most[1]);
-  if (!(stiffness > 0)) return {};
-  const double omega = std::sqrt(square_of_force / stiffness);
-  const double least = matters * length_ * omega * omega * omega;
-  if (!(std::max(most[0], most[1] / omega) > least)) return {};
-  return {frequency(), most[0] > least ? of_rates : 0.0};
+  const auto damping = [&](const VectorXd& x) {  // x . C x
+    system_.expand_rate(x, along);
+    f_.setZero();
+    add(q_, v_ + along, -1), add(q_, v_ - along, 1);
+    return along.dot(f_) / 2;
+  };
+  VectorXd of_w = state.w, of_a = largest_ * acceleration_, next_w(n), next_a(n);
+  Swing found;
+  for (int k = 0; k < (elastic ? 1 : rounds); ++k) {
+    const VectorXd r_w = stretched(of_w), r_a = stretched(of_a);
+    index1_.accelerate(r_w, next_w), index1_.accelerate(r_a, next_a);
+    const double stiffness = of_w.dot(r_w) + of_a.dot(r_a), mass_w = 2 * system_.kinetic_energy(of_w),
+                 mass = mass_w + 2 * system_.kinetic_energy(of_a);
+    if (!(stiffness > 0)) break;
+    const double omega = std::sqrt(stiffness / mass), least = matters * length_ * std::pow(omega, 2 * k + 3);
+    const bool by_rates = next_w.lpNorm<Eigen::Infinity>() > least;
+    if (by_rates || next_a.lpNorm<Eigen::Infinity>() > largest_ * omega * least) {
+      const auto damped = [](double K, double c, double m) {
+        return std::sqrt(std::max(0.0, K / m - std::pow(0.5 * c / m, 2)));
+      };
+      const double c = damping(of_w);
+      found = {damped(stiffness, c + damping(of_a), mass), by_rates ? damped(of_w.dot(r_w), c, mass_w) : 0.0};
+    }
+    of_w.swap(next_w), of_a.swap(next_a);
+  }
+  return found;
 }
 
 double StepControl::density(const State& state) {

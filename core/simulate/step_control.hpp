@@ -13,10 +13,10 @@ namespace unfurl {
 
 // Rates [1/s] at which a motion turns and changes: over the rods of `structure` the largest omega, with which
 // v h + b h^2 / 2 = alpha for h = alpha / omega, v = |v_b - v_a| / l and b = |e x (a_b - a_a)| / l of a rod
-// along e, and the frequency of what the motion stretches, (w . K w / w . M w)^1/2 of forces F(z), K = -dF/dz
-// (of w' h_0 as well, where it is at rest), where a swing is more than a millionth of the structure and
-// nothing is driven; that of the fastest sine that something follows; and r = |w'| / (|w| + |w'| / r_0) in
-// the mass norm, which a motion from rest keeps below r_0.
+// along e, and the frequency of the fastest that swings in it by more than a millionth of the structure,
+// (x . K x / x . M x)^1/2 of forces F(z), K = -dF/dz (of w' h_0 as well, where it is at rest), where nothing
+// is driven; that of the fastest sine that something follows; and r = |w'| / (|w| + |w'| / r_0) in the mass
+// norm, which a motion from rest keeps below r_0.
 //
 //     Q(z, w) = sqrt(1 + (h_0 (omega + r) / alpha)^2),     h_{n-1/2} h_{n+1/2} = (h_0 / Q(z_n, w_n))^2
 //
@@ -32,8 +32,7 @@ class StepControl {
   StepControl(const Structure& structure, const System& system, const SolverOptions& options);
   // The step that follows `state` [s]; to be asked once for every accepted state, in order.
   double next(const State& state);
-  // What swings on springs in the state last asked for, by the share of the energy that it has, and by that
-  // of the kinetic energy alone [1/s].
+  // The fastest that swings on springs in the state last asked for, and the same by rates alone [1/s].
   struct Swing {
     double omega = 0, of_rates = 0;
   };
@@ -59,7 +58,7 @@ class StepControl {
   Swing swing_, asked_;
   double previous_ = 0;  // the last step [s]; 0 before the first
   bool known_ = false;   // acceleration_ is that of the last state asked for
-  VectorXd acceleration_, lambda_, q_, v_, a_, f_, moving_mass_;
+  VectorXd acceleration_, lambda_, q_, v_, a_, f_;
 };
 
 }  // namespace unfurl

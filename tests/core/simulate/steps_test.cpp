@@ -256,10 +256,7 @@ end_time = 0.1
   CHECK(run(1e-9, 0, 0.1).steps <= 20);
   CHECK(run(1e-4, 0, 0.1, 1e-12).steps > 900);
   for (const double amplitude : {0.0, 1e-16, 1e-7}) CHECK(run(amplitude, 0, 0.1, 1e-12).steps <= 20);
-  const Simulation hidden = run(0.1, 0, 0.1, 1e12);
-  CHECK(hidden.steps <= 20);
-  REQUIRE(hidden.warnings.size() == 1);
-  CHECK(hidden.warnings[0].find("does not resolve the fastest swing on springs") != std::string::npos);
+  CHECK(run(0.1, 0, 0.1, 1e12).steps > 900);  // beside 1e8 times its energy
   CHECK(run(0.1, 4000, 0.1).steps <= 100);
 }
 

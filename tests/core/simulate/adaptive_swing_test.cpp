@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Adaptive steps follow what is light and swings fast beside what is heavy and has nearly all of the energy.
+#include <Eigen/Eigenvalues>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "tests/support/scene_run.hpp"
+
+using namespace unfurl;
+using namespace unfurl::testing;
+
+namespace adaptive_swing_test {
+namespace {
+
+const std::string solver = R"([solver]
+adaptive = true
+step = 0.05
+turn = 0.1
+end_time = 2
+)";
+
+// With two stages a swing is late by (h omega)^4 / 720 of its phase, h omega = turn: at `phase` [rad], twice
+// that.
+double allowed(double amplitude, double phase) {
+  return 2 * amplitude * phase * std::pow(0.1, 4) / 720;
+}
+
+}  // namespace
+
+// A pendulum of a tonne, and a gram on a spring that nothing joins with it, or hung on it: 0.05 J beside
+// 10^4.
+TEST_CASE("adaptive steps follow a light swing beside a heavy pendulum") {
+  const Simulation run = run_scene(R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], fixed = true}, {name = "B", position = [1, 0, 0], mass = 1000},
+         {name = "C", position = [5, 0, 0], fixed = true}, {name = "D", position = [6, 0, 0], mass = 0.001}]
+rods = [{nodes = ["A", "B"], mass = 0}]
+constraints = [{kind = "line", nodes = ["D"], direction = [1, 0, 0]}]
+[[forces]]
+kind = "spring"
+nodes = ["C", "D"]
+stiffness = 10
+free_length = 0.9
+[gravity]
+acceleration = [0, 0, -9.81]
+)" + solver);
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(run.warnings.empty());
+  CHECK(end_positions(run)[9] == Approx(5.9 + 0.1 * std::cos(200.0)).epsilon(0).margin(allowed(0.1, 200)));
+}
+
+// Two masses in line on two springs, the outer one a billionth: what it does by the eigenvectors.
+TEST_CASE("adaptive steps follow a light swing on a heavy one") {
+  const double M = 1000, m = 1e-6, k1 = 1000, k2 = 1e-2;
+  const Simulation run = run_scene(R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true}, {name = "A", position = [1.1, 0, 0], mass = 1000},
+         {name = "B", position = [2.2, 0, 0], mass = 1e-6}]
+constraints = [{kind = "line", nodes = ["A"], direction = [1, 0, 0]},
+               {kind = "line", nodes = ["B"], direction = [1, 0, 0]}]
+[[forces]]
+kind = "spring"
+nodes = ["O", "A"]
+stiffness = 1000
+free_length = 1
+[[forces]]
+kind = "spring"
+nodes = ["A", "B"]
+stiffness = 0.01
+free_length = 1
+)" + solver);
+  REQUIRE(run.status == RunStatus::completed);
+  CHECK(run.warnings.empty());
+  const Eigen::Vector2d root(std::sqrt(M), std::sqrt(m));
+  Eigen::Matrix2d K;
+  K << (k1 + k2) / M, -k2 / std::sqrt(M * m), -k2 / std::sqrt(M * m), k2 / m;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> swings(K);
+  Eigen::Vector2d parts = swings.eigenvectors().transpose() * root.cwiseProduct(Eigen::Vector2d(0.1, 0.2));
+  for (int i = 0; i < 2; ++i) parts[i] *= std::cos(2 * std::sqrt(swings.eigenvalues()[i]));
+  const Eigen::Vector2d u = (swings.eigenvectors() * parts).cwiseQuotient(root);
+  CHECK(end_positions(run)[3] == Approx(1 + u[0]).epsilon(0).margin(allowed(0.1, 2)));
+  CHECK(end_positions(run)[6] == Approx(2 + u[1]).epsilon(0).margin(allowed(0.1, 200)));
+}
+
+}  // namespace adaptive_swing_test
