@@ -54,8 +54,9 @@ bool StepControl::driven(double t) const {
 StepControl::Swing StepControl::swing(const State& state) {
   constexpr double small = 1e-6;    // of a length, of a rate: rounding leaves 1e-10 of a stretch
   constexpr double matters = 1e-6;  // of a length, an amplitude
-  if (system_.constant_forces() || bends_ || driven(state.t)) return {};  // what is driven swings not
-  const bool elastic = system_.elastic_rods();
+  if (system_.constant_forces() || bends_) return {};
+  const bool elastic = system_.elastic_rods(), is_driven = driven(state.t);
+  const int last = elastic ? (is_driven ? 0 : 1) : rounds;
   const VectorXd still = VectorXd::Zero(elastic ? std::ssize(system_.giving_rods()) : 0);
   const auto add = [&](const VectorXd& q, const VectorXd& v, double scale) {
     if (elastic)
@@ -84,15 +85,16 @@ StepControl::Swing StepControl::swing(const State& state) {
   };
   VectorXd of_w = state.w, of_a = largest_ * acceleration_, next_w(n), next_a(n);
   Swing found;
-  for (int k = 0; k < (elastic ? 1 : rounds); ++k) {
+  for (int k = 0; k < last; ++k) {
     const VectorXd r_w = stretched(of_w), r_a = stretched(of_a);
     index1_.accelerate(r_w, next_w), index1_.accelerate(r_a, next_a);
     const double stiffness = of_w.dot(r_w) + of_a.dot(r_a), mass_w = 2 * system_.kinetic_energy(of_w),
                  mass = mass_w + 2 * system_.kinetic_energy(of_a);
-    if (!(stiffness > 0)) break;
-    const double omega = std::sqrt(stiffness / mass), least = matters * length_ * std::pow(omega, 2 * k + 3);
+    const double omega = std::sqrt(std::max(0.0, stiffness) / mass),
+                 least = matters * length_ * std::pow(omega, 2 * k + 3);
     const bool by_rates = next_w.lpNorm<Eigen::Infinity>() > least;
-    if (by_rates || next_a.lpNorm<Eigen::Infinity>() > largest_ * omega * least) {
+    const bool moves = by_rates || next_a.lpNorm<Eigen::Infinity>() > largest_ * omega * least;
+    if (stiffness > 0 && moves && (k > 0 || !is_driven)) {  // what a drive moves itself swings not
       const auto damped = [](double K, double c, double m) {
         return std::sqrt(std::max(0.0, K / m - std::pow(0.5 * c / m, 2)));
       };

@@ -83,4 +83,32 @@ free_length = 1
   CHECK(end_positions(run)[6] == Approx(2 + u[1]).epsilon(0).margin(allowed(0.1, 200)));
 }
 
+// A slide that is driven at a steady rate, and a gram on a spring behind it, let go with the slide's rate and
+// a stretch of 0.1 m: x = 1 + 0.5 t + 0.1 cos(100 t). Without that stretch it only follows, which takes no
+// short steps.
+TEST_CASE("adaptive steps follow a swing behind a drive") {
+  const auto run = [](const std::string& at) {
+    return run_scene(R"([structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], velocity = [0.5, 0, 0], mass = 1000},
+         {name = "B", position = [1, 0, 0], velocity = [0.5, 0, 0], mass = 0.001}]
+constraints = [{kind = "line", nodes = ["A"], direction = [1, 0, 0]},
+               {kind = "line", nodes = ["B"], direction = [1, 0, 0]},
+               {kind = "coordinate", nodes = ["A"], direction = [1, 0, 0], motion = "rate", rate = 0.5}]
+[[forces]]
+kind = "spring"
+nodes = ["A", "B"]
+stiffness = 10
+free_length = 1
+)" + solver,
+                     {"structure.nodes[1].position=[" + at + ",0,0]"});
+  };
+  const Simulation swings = run("1.1"), follows = run("1");
+  REQUIRE(swings.status == RunStatus::completed);
+  CHECK(swings.warnings.empty());
+  CHECK(end_positions(swings)[3] == Approx(2 + 0.1 * std::cos(200.0)).epsilon(0).margin(allowed(0.1, 200)));
+  CHECK(end_positions(follows)[3] == Approx(2).epsilon(1e-12));
+  CHECK(follows.steps < 100);
+}
+
 }  // namespace adaptive_swing_test
