@@ -31,7 +31,8 @@ StepControl::StepControl(const Structure& structure, const System& system, const
       q_(system.coordinates()),
       v_(system.coordinates()),
       a_(system.coordinates()),
-      f_(system.coordinates()) {}
+      f_(system.coordinates()),
+      moving_(system.moving_mass().array().isFinite().cast<double>()) {}
 
 // What a drive moves now or soon; a stop that holds, friction that sticks and what is held do not.
 bool StepControl::driven(double t) const {
@@ -47,10 +48,11 @@ bool StepControl::driven(double t) const {
 
 // Of the swings in w and h_0 w' (whichever way the energy is) the fastest that is larger than `matters`: with
 // x <- M^-1 K x along the constraints each has omega^2 as much of the next x, so that some rounds bring out
-// what is light, beside heavy ones that are slower or stretch nothing. K is of forces that vary with the
-// pose, and damps by as much of them as varies with rates; rods that give are left to methods that stop their
-// waves, and hold nothing here. The amplitude is max |x_k+1| over omega^(2 k + 3) for x_0 = w, and omega^(2 k
-// + 4) for w'.
+// what is light, beside heavy ones that are slower or stretch nothing. omega^2 is |M^-1 K x| over |x| in the
+// mass norm, also of what springs drive apart, K of forces that vary with the pose, damped by as much of them
+// as varies with rates; rods that give are left to methods that stop their waves, and hold nothing here (x .
+// K x over x . M x). The amplitude is max |x_k+1| over omega^(2 k + 3) for x_0 = w, and over omega^(2 k + 4)
+// for w'.
 StepControl::Swing StepControl::swing(const State& state) {
   constexpr double small = 1e-6;    // of a length, of a rate: rounding leaves 1e-10 of a stretch
   constexpr double matters = 1e-6;  // of a length, an amplitude
@@ -77,29 +79,37 @@ StepControl::Swing StepControl::swing(const State& state) {
     system_.reduce_force(f_, r);
     return r / (2 * d);
   };
-  const auto damping = [&](const VectorXd& x) {  // x . C x
+  const auto damping = [&](const VectorXd& x, double omega) {  // x . C x
     system_.expand_rate(x, along);
+    const double size = along.lpNorm<Eigen::Infinity>(), d = small * length_ * omega / size;
+    if (!(size > 0)) return 0.0;
     f_.setZero();
-    add(q_, v_ + along, -1), add(q_, v_ - along, 1);
-    return along.dot(f_) / 2;
+    add(q_, v_ + d * along, -1), add(q_, v_ - d * along, 1);
+    return along.dot(f_) / (2 * d);
   };
-  VectorXd of_w = state.w, of_a = largest_ * acceleration_, next_w(n), next_a(n);
+  VectorXd of_w = moving_ * state.w.array(), of_a = largest_ * moving_ * acceleration_.array(), next_w(n),
+           next_a(n);
   Swing found;
   for (int k = 0; k < last; ++k) {
     const VectorXd r_w = stretched(of_w), r_a = stretched(of_a);
     index1_.accelerate(r_w, next_w), index1_.accelerate(r_a, next_a);
-    const double stiffness = of_w.dot(r_w) + of_a.dot(r_a), mass_w = 2 * system_.kinetic_energy(of_w),
-                 mass = mass_w + 2 * system_.kinetic_energy(of_a);
-    const double omega = std::sqrt(std::max(0.0, stiffness) / mass),
-                 least = matters * length_ * std::pow(omega, 2 * k + 3);
+    next_w.array() *= moving_, next_a.array() *= moving_;
+    const auto energy = [&](const VectorXd& x) { return 2 * system_.kinetic_energy(x); };
+    const auto stiffness = [&](const VectorXd& x, const VectorXd& r, const VectorXd& next) {
+      return elastic ? std::abs(x.dot(r)) : std::sqrt(energy(x) * energy(next));
+    };
+    const double mass_w = energy(of_w), mass = mass_w + energy(of_a);
+    const double by_w = stiffness(of_w, r_w, next_w), all = by_w + stiffness(of_a, r_a, next_a);
+    if (!(all > 0)) break;
+    const double omega = std::sqrt(all / mass), least = matters * length_ * std::pow(omega, 2 * k + 3);
     const bool by_rates = next_w.lpNorm<Eigen::Infinity>() > least;
     const bool moves = by_rates || next_a.lpNorm<Eigen::Infinity>() > largest_ * omega * least;
-    if (stiffness > 0 && moves && (k > 0 || !is_driven)) {  // what a drive moves itself swings not
+    if (moves && (k > 0 || !is_driven)) {  // what a drive moves itself swings not
       const auto damped = [](double K, double c, double m) {
         return std::sqrt(std::max(0.0, K / m - std::pow(0.5 * c / m, 2)));
       };
-      const double c = damping(of_w);
-      found = {damped(stiffness, c + damping(of_a), mass), by_rates ? damped(of_w.dot(r_w), c, mass_w) : 0.0};
+      const double c = damping(of_w, omega);
+      found = {damped(all, c + damping(of_a, omega), mass), by_rates ? damped(by_w, c, mass_w) : 0.0};
     }
     of_w.swap(next_w), of_a.swap(next_a);
   }

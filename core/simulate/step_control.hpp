@@ -14,7 +14,7 @@ namespace unfurl {
 // Rates [1/s] at which a motion turns and changes: over the rods of `structure` the largest omega, with which
 // v h + b h^2 / 2 = alpha for h = alpha / omega, v = |v_b - v_a| / l and b = |e x (a_b - a_a)| / l of a rod
 // along e, and the frequency of the fastest that swings in it by more than a millionth of the structure,
-// (x . K x / x . M x)^1/2 of forces F(z), K = -dF/dz (of w' h_0 as well, where it is at rest), where nothing
+// (|M^-1 K x| / |x|)^1/2 of forces F(z), K = -dF/dz (of w' h_0 as well, where it is at rest), where nothing
 // is driven; that of the fastest sine that something follows; and r = |w'| / (|w| + |w'| / r_0) in the mass
 // norm, which a motion from rest keeps below r_0.
 //
@@ -59,6 +59,7 @@ class StepControl {
   double previous_ = 0;  // the last step [s]; 0 before the first
   bool known_ = false;   // acceleration_ is that of the last state asked for
   VectorXd acceleration_, lambda_, q_, v_, a_, f_;
+  Eigen::ArrayXd moving_;  // 0 of integrals of controllers: no numbers of theirs are lengths
 };
 
 }  // namespace unfurl

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/study/table.hpp"
 #include "tests/support/scene_run.hpp"
 
 using namespace unfurl;
@@ -109,6 +110,45 @@ free_length = 1
   CHECK(end_positions(swings)[3] == Approx(2 + 0.1 * std::cos(200.0)).epsilon(0).margin(allowed(0.1, 200)));
   CHECK(end_positions(follows)[3] == Approx(2).epsilon(1e-12));
   CHECK(follows.steps < 100);
+}
+
+// A mass that moves in a plane at a spring's end, which is pressed at times: its stiffness across the spring
+// is negative then, and as much as that along it in some direction of motion. Against fixed steps of a tenth
+// and five stages, which are of order 8: off by as much as phases of (h omega)^4 / 720 over some 40 rad, h
+// omega = turn.
+TEST_CASE("adaptive steps follow springs that are pressed and turn") {
+  const std::string text = R"([structure]
+kind = "custom"
+nodes = [{name = "O", position = [0, 0, 0], fixed = true},
+         {name = "A", position = [-0.529, 0.421, 0], mass = 0.00375},
+         {name = "B", position = [-1.921, 0.943, 0], mass = 0.4139}]
+constraints = [{kind = "line", nodes = ["A"], direction = [0.953, -0.420, 0]},
+               {kind = "plane", nodes = ["B"], normal = [0, 0, 1]}]
+[[forces]]
+kind = "spring"
+nodes = ["O", "A"]
+stiffness = 0.5677
+free_length = 1.826
+[[forces]]
+kind = "spring"
+nodes = ["A", "B"]
+stiffness = 3.212
+free_length = 1.965
+[gravity]
+acceleration = [0, -9.81, 0]
+[solver]
+adaptive = true
+step = 0.05
+end_time = 1.5
+)";
+  const VectorXd exact =
+      end_positions(run_scene(text, {"solver.adaptive=false", "solver.step=0.0005", "solver.stages=5"}));
+  for (const double turn : {0.1, 0.05}) {
+    const Simulation run = run_scene(text, {"solver.turn=" + exact_number(turn)});
+    REQUIRE(run.status == RunStatus::completed);
+    CHECK((end_positions(run) - exact).lpNorm<Eigen::Infinity>() < 40 * std::pow(turn, 4) / 720);
+    CHECK(static_cast<double>(run.steps) < 40 / turn);
+  }
 }
 
 }  // namespace adaptive_swing_test
