@@ -252,6 +252,39 @@ end_time = 2
   CHECK(end[10] == Approx(std::cos(theta)).epsilon(0).margin(1e-9));
 }
 
+// Two arms of 1 m on one shaft, at 3 rad/s and 0.3 rad apart, and a spring on the difference of their angles,
+// each of which turns twice round: phi = 0.3 cos(w t) apart, w^2 = k (1/I + 1/J), the sum of I a and J b as
+// at the start.
+TEST_CASE("a spring on a difference of angles goes on while both turn round") {
+  const std::string text = R"(
+[structure]
+kind = "custom"
+nodes = [
+  {name = "O", position = [0, 0, 0], fixed = true}, {name = "H", position = [1, 0, 0], fixed = true},
+  {name = "A", position = [1, 0, 0], velocity = [0, 3, 0], mass = 0.5},
+  {name = "B", position = [0.955336489125606, 0.29552020666133955, 0], velocity = [-0.8865606199840187, 2.866009467376818, 0], mass = 2}]
+rods = [{nodes = ["O", "A"], mass = 0}, {nodes = ["O", "B"], mass = 0}]
+constraints = [{kind = "plane", nodes = ["A"], normal = [0, 0, 1]},
+               {kind = "plane", nodes = ["B"], normal = [0, 0, 1]}]
+[[forces]]
+kind = "combination"
+terms = ["-1 angle A O H about 0 0 1", "1 angle B O H about 0 0 1"]
+stiffness = 0.9
+free_value = 0
+[solver]
+stages = 4
+step = 0.02
+end_time = 4
+)";
+  const double w = std::sqrt(0.9 * (1 / 0.5 + 1 / 2.0)), apart = 0.3 * std::cos(4 * w);
+  const double a = 3 * 4 + (2 * 0.3 - 2 * apart) / 2.5, b = a + apart;
+  const VectorXd end = end_positions(run_scene(text));
+  CHECK(end[6] == Approx(std::cos(a)).epsilon(0).margin(1e-8));
+  CHECK(end[7] == Approx(std::sin(a)).epsilon(0).margin(1e-8));
+  CHECK(end[9] == Approx(std::cos(b)).epsilon(0).margin(1e-8));
+  CHECK(end[10] == Approx(std::sin(b)).epsilon(0).margin(1e-8));
+}
+
 // Two panels that stand 90 degrees open about the x axis: L lies in -y of it, R in +z. About the edge from H0
 // to H1, which is +x, the half-plane of R follows that of L by atan2(x . (L x R), L . R) = atan2(-1, 0) = -90
 // deg.
