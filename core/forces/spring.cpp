@@ -125,7 +125,9 @@ class Springs final : public ForceBlock {
       else
         spring.measure.add_hessian(q, -n, by_q);
       const double c = spring.law.damping;
-      const double by_stretch = law.stiffness * pull.share + c * pull.bend * rate;
+      const bool in_line = std::abs(s - law.rest) <= rounding * (1 + std::abs(law.rest)) &&
+                           spring.measure.add_square_in_line(q, -law.stiffness, by_q);
+      const double by_stretch = in_line ? 0.0 : law.stiffness * pull.share + c * pull.bend * rate;
       bend = by_stretch * g;
       if (c > 0) spring.measure.add_hessian_times(q, v, c * pull.share, bend.data());
       const VectorXd along = g;  // of the rate; what pulls is weighed by the pulleys
@@ -143,6 +145,8 @@ class Springs final : public ForceBlock {
   }
 
  private:
+  static constexpr double rounding = 1e-11;  // of an angle at rest in line [rad]
+
   // Slack while it is still stretched, as its damper would push: it gives no force, and what it has stored is
   // gone by and by as it comes to its length; of what is reeled less what its winch gives and takes.
   static bool lets_go(const Force& law) { return law.slack && law.damping > 0; }

@@ -232,6 +232,26 @@ void MeasureFunction::add_hessian(const double* q, double scale,
     for (const int i : stencil_) entries.emplace_back(i, j, scale * *h++);
 }
 
+// To the first order the sides are off their line by |d_1 x d_2 / (d_1 . d_2)|, in whatever direction.
+bool MeasureFunction::add_square_in_line(const double* q, double scale,
+                                         std::vector<Eigen::Triplet<double>>& entries) const {
+  if (terms_.size() == 1)
+    return terms_[0].add_square_in_line(q, scale * coefficients_[0] * coefficients_[0], entries);
+  if (kind_ != MeasureKind::angle || turns_) return false;
+  const AngleSides sides(q, stencil_);
+  const Vec3 &d1 = sides.d1(), &d2 = sides.d2();
+  const double c = d1.dot(d2);
+  if (c == 0 || !in_line(d1.cross(d2).norm(), c)) return false;
+  Eigen::Matrix<double, 3, 6> turn;
+  turn << -cross_matrix(d2) / c, cross_matrix(d1) / c;
+  MatrixXd square(std::ssize(stencil_), std::ssize(stencil_));
+  sides.hessian(Vec6::Zero(), turn.transpose() * turn, square);
+  const double* h = square.data();
+  for (const int j : stencil_)
+    for (const int i : stencil_) entries.emplace_back(i, j, scale * *h++);
+  return true;
+}
+
 void MeasureFunction::add_hessian_times(const double* q, const double* v, double scale, double* out) const {
   each_term([&](const MeasureFunction& term, double c, std::size_t first, int) {
     term.add_hessian_times(q, v, scale * c, out + first);

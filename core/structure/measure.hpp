@@ -46,6 +46,9 @@ class MeasureFunction {
   void hessian(const double* q, double* hess) const;
   // entries += scale * Hess s, by coordinates; terms of a combination meet in no entry.
   void add_hessian(const double* q, double scale, std::vector<Eigen::Triplet<double>>& entries) const;
+  // Of an angle without an axis whose sides lie in line, also with a factor, s has no Hessian but the square
+  // of what s lacks of its value there has: entries += scale * half of that. False: it is no such angle.
+  bool add_square_in_line(const double* q, double scale, std::vector<Eigen::Triplet<double>>& entries) const;
   // out += scale * Hess s v, by places in the stencil.
   void add_hessian_times(const double* q, const double* v, double scale, double* out) const;
   // v^T Hess s v: the second derivative of s along q + t v, without that matrix.

@@ -7,7 +7,9 @@
 
 #include "core/diagnostics/diagnostics.hpp"
 #include "core/diagnostics/reactions.hpp"
+#include "core/diagnostics/vibration.hpp"
 #include "core/forces/friction.hpp"
+#include "core/simulate/initial_state.hpp"
 #include "tests/support/number.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -187,6 +189,28 @@ TEST_CASE("friction goes on against the motion through the pose in line and besi
     CHECK((f.segment<3>(3) - 0.7 * u).norm() < 1e-7);
     CHECK(friction_block(s, {})->power(1.0, q.data(), v.data()) == Approx(-0.7 * 1.9).epsilon(1e-7));
   }
+}
+
+// Light rods of l_1 = 1 and l_2 = 0.5 m, straight or folded (s = -1), and k at their hinge, at rest there:
+// the angle is off by |y_B s / l_2 - y_A (1 / l_1 + s / l_2)| in either direction across, so that
+//     w^2 = k ((1 / l_1 + s / l_2)^2 / m_A + 1 / (l_2^2 m_B))
+// and the two turn as one about O without a force. To rounding but for that of the line, of 1e-16 m.
+TEST_CASE("a spring at rest in line of a hinge without an axis has its stiffness in both directions") {
+  const Vec3 u = Vec3(0.48, 0.6, 0.64), n = u.cross(Vec3::UnitX()).normalized();
+  for (const double side : {1.0, -1.0})
+    for (const std::string spring : {"kind = 'torsion_spring'\nnodes = ['O', 'A', 'B']\nstiffness = 3",
+                                     "kind = 'combination'\nterms = ['2 angle O A B']\nstiffness = 0.75"}) {
+      const auto model = testing::model_of(crank(u, n, side, 0, "[[forces]]\n" + spring),
+                                           {"structure.rods[0].mass=0", "structure.rods[1].mass=0"});
+      const Vibration found = vibration(*model, initial_state(model->structure, model->system).state);
+      const double bend = 1 + side / 0.5, squared = 3 * (bend * bend / 0.4 + 4 / 0.3);
+      CAPTURE(side, spring);
+      REQUIRE(found.modes.size() == 4);
+      for (const int k : {0, 1}) CHECK(found.modes[static_cast<std::size_t>(k)].frequency < 1e-6);
+      for (const int k : {2, 3})
+        CHECK(found.modes[static_cast<std::size_t>(k)].frequency ==
+              Approx(std::sqrt(squared) / (2 * pi)).epsilon(1e-10));
+    }
 }
 
 }  // namespace in_line_test
