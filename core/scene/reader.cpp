@@ -225,7 +225,10 @@ void read_title(TableReader& root, const TomlTree& tree, const TomlTree& own, Sc
   std::string unknown;
   scene.title = scene_title(tree, own, scene.name, &unknown);
   if (is_title_pattern(given)) scene.title_pattern = given;
-  if (!unknown.empty()) root.problem("title", "{" + unknown + "} names no number or text of [structure]");
+  if (!unknown.empty())
+    root.problem("title", "{" + unknown +
+                              "} names no number or text of [structure], whose keys a title "
+                              "takes, no variables; a brace is {{");
 }
 
 // "structure.nodes[3].mass" -> "structure.nodes[].mass"

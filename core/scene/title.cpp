@@ -16,12 +16,15 @@ struct Piece {
   std::string key, text;
 };
 
-// A brace that is doubled means itself; so does one around anything but a key.
+// A brace that is doubled means itself; so does one around anything but a key, which "variables.n" would be,
+// too.
 Piece piece_at(const std::string& text, std::size_t at) {
+  static const std::string letters = "abcdefghijklmnopqrstuvwxyz_", digits = "0123456789";
   const char c = text[at];
   if ((c == '{' || c == '}') && at + 1 < text.size() && text[at + 1] == c) return {at + 2, "", {c}};
   if (c == '{') {
-    const std::size_t close = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789", at + 1);
+    const bool word = at + 1 < text.size() && letters.find(text[at + 1]) != std::string::npos;
+    const std::size_t close = text.find_first_not_of(letters + digits + (word ? "." : ""), at + 1);
     if (close != std::string::npos && text[close] == '}' && close > at + 1)
       return {close + 1, text.substr(at + 1, close - at - 1), ""};
   }

@@ -58,15 +58,18 @@ TEST_CASE("a title that names no parameter is dropped where the structure is ano
 
 TEST_CASE("a place in a title takes a key of the structure, its default too, and must be one") {
   CHECK(written("{units} bays of {chord_rod_length} m, {model}").title == "Nine bays of 3 m, full");
-  try {
-    written("Ring {of} braces");
-    FAIL("was read");
-  } catch (const SceneError& error) {
-    REQUIRE(error.problems().size() == 1);
-    CHECK(error.problems()[0].key == "title");
-    CHECK(error.problems()[0].message == "{of} names no number or text of [structure]");
-  }
+  for (const std::string key : {"of", "variables.n", "structure.units"}) try {
+      written("Ring {" + key + "} braces");
+      FAIL("was read: " + key);
+    } catch (const SceneError& error) {
+      REQUIRE(error.problems().size() == 1);
+      CHECK(error.problems()[0].key == "title");
+      CHECK(error.problems()[0].message == "{" + key +
+                                               "} names no number or text of [structure], whose keys a title "
+                                               "takes, no variables; a brace is {{");
+    }
   CHECK(written("A set {1, 2} or {a b}").title == "A set {1, 2} or {a b}");
+  CHECK(written("Of {0.5} m and {.x}").title == "Of {0.5} m and {.x}");
   CHECK(written("No set {}, none { or }").title == "No set {}, none { or }");
   CHECK(written("{} and {units} of {a b} { {units}").title == "{} and nine of {a b} { nine");
 }
