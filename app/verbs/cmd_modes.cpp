@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // unfurl modes SCENE [--at TIME|start|end|deployed] [-o DIR]: free motions and natural frequencies at a pose.
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "app/command.hpp"
 #include "app/output/interrupt.hpp"
@@ -11,7 +14,9 @@
 #include "app/verbs/scene_run.hpp"
 #include "app/verbs/study_session.hpp"
 #include "core/diagnostics/rod_strength.hpp"
+#include "core/diagnostics/touched_limits.hpp"
 #include "core/study/table.hpp"
+#include "core/system/consistency.hpp"
 #include "core/text/nearest_name.hpp"
 #include "render/plot/figures/mode_shapes.hpp"
 
@@ -30,11 +35,13 @@ Table shapes_table(const Vibration& vibration, const Structure& structure) {
   return table;
 }
 
-nlohmann::ordered_json modes_json(const Scene& scene, const Vibration& vibration) {
+nlohmann::ordered_json modes_json(const Scene& scene, const Vibration& vibration,
+                                  const std::vector<std::string>& one_sided) {
   nlohmann::ordered_json json{{"scene", scene.name},
                               {"pose_t_s", vibration.t},
                               {"mechanism_motions", vibration.mechanism_motions},
-                              {"prestress_unique", vibration.unique}};
+                              {"prestress_unique", vibration.unique},
+                              {"one_sided", one_sided}};
   for (const char* list :
        {"frequencies_Hz", "mechanism_frequencies_Hz", "growth_rates_1_s", "growing_frequencies_Hz"})
     json[list] = nlohmann::ordered_json::array();
@@ -49,7 +56,8 @@ nlohmann::ordered_json modes_json(const Scene& scene, const Vibration& vibration
   return json;
 }
 
-void print_modes(const Scene& scene, const Vibration& vibration, bool elastic) {
+void print_modes(const Scene& scene, const Vibration& vibration, bool elastic,
+                 const std::vector<std::string>& one_sided) {
   constexpr std::size_t most = 24;
   const auto elastic_modes = vibration.modes.size() - static_cast<std::size_t>(vibration.mechanism_motions);
   std::cout << scene.name << " at " << short_number(vibration.t, 6) << " s: mechanism motions "
@@ -59,6 +67,10 @@ void print_modes(const Scene& scene, const Vibration& vibration, bool elastic) {
     std::cout << "  (nothing is free to move: constraints, stops and drives hold it)\n";
   else if (!vibration.unique)
     std::cout << "  (forces are not unique at this pose, and with them the stiffness that they give)\n";
+  if (!one_sided.empty())
+    std::cout
+        << "  (just taut or touched, without a force, so that it acts to one side only and is left out: "
+        << unfurl::listed(one_sided, 4) << ")\n";
   if (!vibration.modes.empty()) std::cout << "mode   frequency (Hz)\n";
   for (std::size_t k = 0; k < std::min(most, vibration.modes.size()); ++k) {
     const VibrationMode& mode = vibration.modes[k];
@@ -82,10 +94,11 @@ int cmd_modes(const Arguments& arguments) {
   if (interrupted()) return exit_interrupted;
   const Structure& structure = pose.model->structure;
   const Vibration vibration = vibration_of(pose);
+  const std::vector<std::string> one_sided = touched_limits(*pose.model, pose.state);
   if (arguments.json)
-    std::cout << modes_json(scene, vibration).dump(2) << "\n";
+    std::cout << modes_json(scene, vibration, one_sided).dump(2) << "\n";
   else if (!arguments.quiet)
-    print_modes(scene, vibration, any_elastic(structure));
+    print_modes(scene, vibration, any_elastic(structure), one_sided);
   if (arguments.output.empty()) return pose.code;
   StudySession session(arguments, "modes",
                        study_identity("Modes at " + exact_number(vibration.t) + " s", scene), "modes.csv");
