@@ -115,14 +115,16 @@ void draw_timeline(Ui& ui, PanelState& state) {
   // As many decimals as tell a thousandth of the run, some more than its pictures have.
   const double span = end - start, fine = span > 0 ? std::ceil(3 - std::log10(span)) : 3;
   const int decimals = static_cast<int>(std::clamp(fine, span < 0.5 ? 5.0 : 3.0, 12.0));
-  std::snprintf(text, sizeof text, "t = %.*f s", decimals, state.playback.t);
   const float x = ImGui::GetCursorPosX();
   ImGui::PushFont(ui.bold);
+  std::snprintf(text, sizeof text, "t = %.*f s", decimals, end);
+  const float room = std::max(ui.px(104), ImGui::CalcTextSize(text).x + ui.px(14));
+  std::snprintf(text, sizeof text, "t = %.*f s", decimals, state.playback.t);
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(text);
   ui.note("time");
   ImGui::PopFont();
-  ImGui::SetCursorPos({x + ui.px(104), top});
+  ImGui::SetCursorPos({x + room, top});
   draw_bar(ui, state, start, end);
 }
 

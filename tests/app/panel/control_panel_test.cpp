@@ -130,6 +130,21 @@ TEST_CASE("the timeline scrubs, plays and steps") {
   CHECK_FALSE(driver.state().playback.playing);
 }
 
+TEST_CASE("the time stands before its line, however many digits it has") {
+  for (const double end : {2e-4, 5e7}) {
+    SceneDocument still = open_document("pendulum", {});
+    still.edits["gravity.acceleration"] = std::vector<double>{0, 0, 0};
+    still.edits["solver.step"] = end / 20;
+    still.edits["solver.end_time"] = end;
+    PanelDriver driver(PanelDriver::small(), still);
+    driver.key(Key::end);
+    driver.frame();
+    CHECK(driver.state().playback.t == end);
+    // Its handle is a disc of 7 pixels on the line's beginning.
+    CHECK(driver.panel().place("time").x1 + 7 * 0.75 < driver.panel().place("timeline").x0);
+  }
+}
+
 TEST_CASE("dragging in a figure moves the time") {
   PanelDriver driver;
   const double end = driver.state().shown->simulation.trajectory.end_time();
