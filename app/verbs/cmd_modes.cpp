@@ -69,7 +69,8 @@ void print_modes(const Scene& scene, const Vibration& vibration, bool elastic,
     std::cout << "  (forces are not unique at this pose, and with them the stiffness that they give)\n";
   if (!one_sided.empty())
     std::cout
-        << "  (just taut or touched, without a force, so that it acts to one side only and is left out: "
+        << "  (just taut or touched without a force, so that it acts to one side only, which frequencies do "
+           "not tell: "
         << unfurl::listed(one_sided, 4) << ")\n";
   if (!vibration.modes.empty()) std::cout << "mode   frequency (Hz)\n";
   for (std::size_t k = 0; k < std::min(most, vibration.modes.size()); ++k) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/forces/spring.hpp"
 #include "core/simulate/stops.hpp"
@@ -27,8 +28,10 @@ std::vector<std::string> touched_limits(const Model& model, const State& pose) {
     if (!force.one_sided || force.smoothing > 0) continue;  // a smoothed one begins to pull evenly
     const SpringLaw law = spring_law(force, pose.t, q.data());
     const MeasureFunction length(force.measure, structure.deployment);
-    if (law.stiffness > 0 && std::abs(length.value(q.data()) - law.rest) <= stops.touching(length))
-      add(force.name);
+    // No more than rounding: a stiff one that pulls is stretched by little.
+    const double rounding =
+        8 * std::numeric_limits<double>::epsilon() * (law.rest + q.lpNorm<Eigen::Infinity>());
+    if (law.stiffness > 0 && std::abs(length.value(q.data()) - law.rest) <= rounding) add(force.name);
   }
   return names;
 }

@@ -43,6 +43,8 @@ TEST_CASE("cables and springs that only pull are told where they are just taut, 
     CHECK(touched(entry + length + " = 0.999\n") == none);
     CHECK(touched(entry + length + " = 1.001\n") == none);
   }
+  // 1 N on 1e12 N/m stretches it by 1e-12 m, which is no rounding.
+  CHECK(touched(spring + "kind = 'cable'\naxial_stiffness = 1e12\nlength = 0.999999999999\n") == none);
   CHECK(touched(spring + "kind = 'spring'\nstiffness = 5\n") == none);  // it pushes, too
   CHECK(touched(spring + "kind = 'cable'\naxial_stiffness = 5\nsmoothing = 0.01\n") == none);
 }
