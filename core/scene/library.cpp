@@ -69,8 +69,11 @@ std::string find_scene(const std::string& scene) {
     if (row.name == scene) return row.path;
     names.push_back(row.name);
   }
-  if (fs::is_directory(scene, error))
-    throw UnreadableScene("cannot read scene " + scene + ": is a directory");
+  if (fs::is_directory(scene, error)) {
+    const std::string own = (fs::path(scene) / "scene.toml").string();
+    throw UnreadableScene("cannot read scene " + scene + ": is a directory" +
+                          (fs::exists(own, error) ? ", whose scene is " + own : ""));
+  }
   const bool is_path = scene.find('/') != std::string::npos || scene.ends_with(".toml");
   if (is_path) throw UnreadableScene("cannot read scene " + scene + ": no such file");
   if (names.empty()) throw UnreadableScene("no file " + in_quotes(scene) + ", and " + no_library());

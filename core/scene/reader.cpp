@@ -309,6 +309,9 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   read_render(root, tree, scene, notes);
   root.table("variables");  // is out of the tree by now; one that is misspelt is not
   root.finish();
+  for (SceneProblem& problem : notes.problems)
+    if (scene.variables.contains(problem.key) && problem.message.starts_with("unknown key"))
+      problem.message = "unknown key; did you mean 'variables." + problem.key + "'?";
   if (!notes.problems.empty()) refuse(notes.problems);
   scene.warnings = std::move(notes.warnings);
   scene.warnings_on_path = std::move(notes.on_path);

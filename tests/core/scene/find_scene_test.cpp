@@ -23,6 +23,11 @@ TEST_CASE("a scene is a file that is there, or one that comes with the program, 
   CHECK(fs::path(find_scene("hoop6")).filename() == "hoop6.toml");
   CHECK(fs::path(find_scene("four_bar")).stem() == "four_bar");
   CHECK_THROWS_WITH(find_scene(folder.string()), "cannot read scene " + folder.string() + ": is a directory");
+  const std::string ran = (folder / "hoop6" / "").string(),
+                    scene = (folder / "hoop6" / "scene.toml").string();
+  std::ofstream(scene) << "title = 'mine'\n";
+  CHECK_THROWS_WITH(find_scene(ran),
+                    "cannot read scene " + ran + ": is a directory, whose scene is " + scene);
   CHECK_THROWS_WITH(find_scene(none), "cannot read scene " + none + ": no such file");
   CHECK_THROWS_WITH(find_scene("none.toml"), "cannot read scene none.toml: no such file");
   CHECK_THROWS_WITH(find_scene("hop6"),

@@ -146,6 +146,7 @@ TEST_CASE("variables are set on the command line") {
   CHECK(scene.custom.nodes[7].mass == 3.0);
   CHECK(mistakes(polygon, {"variables.radiuss=2"}) ==
         "--set variables.radiuss: the scene has no such variable; did you mean 'radius'?");
+  CHECK(mistakes(polygon, {"radius=2"}) == "--set radius: unknown key; did you mean 'variables.radius'?");
   CHECK(read(polygon, {"solver.step=\"=radius/125\""}).solver.step == 0.01);
 }
 
