@@ -243,6 +243,40 @@ void add_cells(const plot::Field& field, const ValueRange& range, Panel& p) {
     }
 }
 
+// The points with a value of which no square of the grid has all four: i, j.
+std::vector<std::pair<std::size_t, std::size_t>> lone_points(const plot::Field& field) {
+  const auto whole = [&](std::size_t i, std::size_t j) {  // the square from there on
+    return i + 1 < field.x.size() && j + 1 < field.y.size() &&
+           !std::isnan(plot::interpolate(field, i, j, 0.5, 0.5));
+  };
+  std::vector<std::pair<std::size_t, std::size_t>> alone;
+  for (std::size_t i = 0; i < field.x.size(); ++i)
+    for (std::size_t j = 0; j < field.y.size(); ++j)
+      if (!std::isnan(field.value(i, j)) && !whole(i, j) && !(i > 0 && whole(i - 1, j)) &&
+          !(j > 0 && whole(i, j - 1)) && !(i > 0 && j > 0 && whole(i - 1, j - 1)))
+        alone.push_back({i, j});
+  return alone;
+}
+
+// A small square around each: a quarter of the way to its neighbours.
+void add_lone_cells(const plot::Field& field, const ValueRange& range, Panel& p) {
+  const auto towards = [](const std::vector<double>& axis, std::size_t from, std::size_t to, bool log) {
+    return log ? axis[from] * std::pow(axis[to] / axis[from], 0.25)
+               : axis[from] + 0.25 * (axis[to] - axis[from]);
+  };
+  const auto low = [&](const std::vector<double>& axis, std::size_t i, bool log) {
+    return towards(axis, i, i > 0 ? i - 1 : i, log);
+  };
+  const auto high = [&](const std::vector<double>& axis, std::size_t i, bool log) {
+    return towards(axis, i, std::min(i + 1, axis.size() - 1), log);
+  };
+  for (const auto& [i, j] : lone_points(field)) {
+    const double value = field.value(i, j);
+    p.cells.push_back({low(field.x, i, p.x.log), low(field.y, j, p.y.log), high(field.x, i, p.x.log),
+                       high(field.y, j, p.y.log), map_color(range.share(value)), exact_number(value)});
+  }
+}
+
 Panel color_bar(const ValueRange& range, const std::vector<double>& levels, std::string label) {
   Panel bar;
   bar.height = 0.07;
@@ -300,12 +334,15 @@ std::string level_label(double level, const std::vector<double>& levels) {
 std::string map_caption(const SweepPlan& plan, const Sweep& sweep, std::size_t measure) {
   const std::string points = std::to_string(plan.axes[0].values.size()) + " x " +
                              std::to_string(plan.axes[1].values.size()) + " points (dots)";
-  const ValueRange range = range_of(field_of(plan, sweep, measure));
+  const plot::Field field = field_of(plan, sweep, measure);
+  const ValueRange range = range_of(field);
   if (range.lo <= range.hi && !varies(range))
     return "The same at every dot: " + plan.measures[measure].label + " = " +
            plot::format_number(range.lo, 4) + ", computed on a grid of " + points + ". ";
   return "Colour and contour lines: " + plan.measures[measure].label + ", computed on a grid of " + points +
-         ", interpolated bilinearly. ";
+         ", interpolated bilinearly" +
+         (lone_points(field).empty() ? ". "
+                                     : "; small squares: points without neighbours that have a value. ");
 }
 
 Figure map_figure(const SweepPlan& plan, const Sweep& sweep, std::size_t measure) {
@@ -327,6 +364,7 @@ Figure map_figure(const SweepPlan& plan, const Sweep& sweep, std::size_t measure
   if (varies(range)) {
     fine = in_parts(field, map.x.log, map.y.log);
     add_cells(fine, range, map);
+    add_lone_cells(field, range, map);
     levels = plot::linear_ticks(range.lo, range.hi, 9).major;
   }
   for (const double level : levels) {

@@ -3,8 +3,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <limits>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "core/scene/library.hpp"
 #include "render/plot/figure_data.hpp"
@@ -293,8 +296,8 @@ TEST_CASE("values that are whole numbers stand at whole ticks", "[figures]") {
   CHECK(figures[0].panels.at(0).x.whole);
 }
 
-// A map of base + step (i + 5 j) over a grid of 5 x 5.
-Figure map_of(double base, double step) {
+// A map of base + step (5 i + j) over a grid of 5 x 5, where it is known.
+Figure map_of(double base, double step, const std::function<bool(int, int)>& known = {}) {
   SweepPlan plan{{find_scene("hoop6_sector"), {}}, {}, {}, {}};
   for (const char* axis : {"structure.fold_angle=40:80:5", "structure.hinge_force=100:400:5"})
     plan.axes.push_back(parse_axis(axis));
@@ -303,7 +306,9 @@ Figure map_of(double base, double step) {
   Sweep sweep{{plan.columns(), {}}};
   for (int k = 0; k < 25; ++k) {
     char value[32];
-    std::snprintf(value, sizeof value, "%.17g", base + step * k);
+    const bool here = !known || known(k / 5, k % 5);
+    std::snprintf(value, sizeof value, "%.17g",
+                  here ? base + step * k : std::numeric_limits<double>::infinity());
     sweep.table.rows.push_back({plan.axes[0].values[static_cast<std::size_t>(k / 5)],
                                 plan.axes[1].values[static_cast<std::size_t>(k % 5)], "deployed", value});
   }
@@ -330,6 +335,33 @@ TEST_CASE("a map of what differs by rounding alone has no colours, and says its 
   CHECK(map.panels.front().curves.size() == 1);  // the dots
   CHECK(map.caption.find(" = 5.425, computed on") != std::string::npos);
   CHECK(map_of(5.42494, 1e-9).panels.size() == 2);
+}
+
+// One square of the grid is known, and one point at a corner and one in the middle, of which no square is.
+TEST_CASE("a map has the colour of a value whose neighbours have none", "[figures]") {
+  const auto known = [](int i, int j) {
+    return (i >= 3 && j <= 1) || (i == 0 && j == 0) || (i == 2 && j == 3);
+  };
+  const Figure map = map_of(2, 0.125, known);
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j) {
+      const double x = 40 + 10 * i, y = 100 + 75 * j;
+      CAPTURE(x, y);
+      std::vector<double> there;
+      for (const Cell& cell : map.panels.front().cells)
+        if (cell.x0 <= x && x <= cell.x1 && cell.y0 <= y && y <= cell.y1)
+          there.push_back(std::stod(cell.stands_for));
+      if (!known(i, j)) {
+        CHECK(there.empty());
+      } else {
+        REQUIRE(there.size() == 1);
+        // Of a lone point the value, of the square's that of a part, half of a 16th off along either way.
+        const double value = 2 + 0.125 * (5 * i + j);
+        CHECK(std::abs(there[0] - value) <= (i >= 3 ? 0.125 * (5 + 1) / 32 * (1 + 1e-9) : 0));
+      }
+    }
+  CHECK(map.caption.find("small squares") != std::string::npos);
+  CHECK(map_of(2, 0.125).caption.find("small squares") == std::string::npos);
 }
 
 TEST_CASE("a map has a dot at every point that was computed", "[figures]") {
