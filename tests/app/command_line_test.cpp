@@ -302,7 +302,10 @@ TEST_CASE("modes: the mechanism's own first, then those of elastic rods, a modul
   CHECK(json["frequencies_Hz"].size() == 23);
   for (const char* file : {"modes.csv", "mode_shapes.csv", "figures/modes.png"})
     CHECK(std::filesystem::exists(dir / "modes" + "/" + file));
+  CHECK(json["one_sided"].empty());
   CHECK(contains(run_program({"modes", "pendulum"}).out, "rods are rigid"));
+  // Its cable has its length at the start and bears nothing.
+  CHECK(contains(run_program({"modes", "cable_ring"}).out, "which frequencies do not tell: cable)"));
   const ProgramResult never = run_program({"modes", "pendulum", "--at", "deployed"}),
                       soon = run_program({"modes", "pendulum", "--at", "soon"});
   CHECK(never.code == 2);
