@@ -2,7 +2,9 @@
 #include "core/math/sparse_ldlt.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/math/interleaved.hpp"
 
@@ -76,7 +78,42 @@ void SparseLdlt::analyse(const SparseRows& upper, const std::vector<int>& order)
   permuted_.assign(8 * n, 0.0);
 }
 
+// Whether columns i .. i + 3 of L have the same rows behind row i + 3: each has the next one's index for its
+// first row, and one row more than that.
+inline bool are_alike(int i, const int* start, const int* rows) {
+  return start[i + 1] - start[i] - 3 == start[i + 4] - start[i + 3] && start[i + 1] - start[i] > 3 &&
+         rows[start[i]] == i + 1 && rows[start[i + 1]] == i + 2 && rows[start[i + 2]] == i + 3;
+}
+
+// y[rows[p]] -= l[0][p] x[0], then l[1][p] x[1] and so on, for p < count: `width` rows that follow each other
+// by one instruction, to the same bits.
+template <int width>
+inline void subtract_four(const std::array<const double*, 4>& l, const std::array<double, 4>& x,
+                          const int* rows, int count, double* y) {
+  using Pack = Lanes<LaneCount(width, width)>;
+  int p = 0;
+  while (p < count) {
+    double* const to = y + rows[p];
+    if (p + width <= count && rows[p + width - 1] - rows[p] == width - 1) {
+      Pack left(to);
+      for (std::size_t k = 0; k < 4; ++k) left = left - x[k] * Pack(l[k] + p);
+      left.store(to);
+      p += width;
+    } else {
+      for (std::size_t k = 0; k < 4; ++k) *to -= l[k][p] * x[k];
+      ++p;
+    }
+  }
+}
+
 bool SparseLdlt::factorise(const double* values, double most) {
+  bool held = false;
+  with_widest([this, values, most, out = &held](auto width) { *out = eliminate<width()>(values, most); });
+  return held;
+}
+
+template <int width>
+bool SparseLdlt::eliminate(const double* values, double most) {
   const int n = static_cast<int>(n_);
   double* const y = work_.data();
   double* const l = l_.data();
@@ -96,15 +133,31 @@ bool SparseLdlt::factorise(const double* values, double most) {
     const double own = y[k];
     double d = own;
     y[k] = 0.0;
-    for (const int* const end = reach_.data() + reach_end[k]; reach != end; ++reach, ++slot) {
-      const int i = *reach;
-      const double yi = y[i];
-      y[i] = 0.0;
-      const int free = *slot;
-      for (int p = start[i]; p < free; ++p) y[rows[p]] -= l[p] * yi;
+    const auto divide = [&](int i, double yi, int at) {
       const double lki = yi * inverse_pivot[i];
       d -= lki * yi;
-      l[free] = lki;
+      l[at] = lki;
+    };
+    for (const int* const end = reach_.data() + reach_end[k]; reach != end; ++reach, ++slot) {
+      const int i = *reach;
+      if (end - reach > 3 && reach[3] == i + 3 && are_alike(i, start, rows)) {
+        const std::array<const double*, 4> columns{l + start[i] + 3, l + start[i + 1] + 2,
+                                                   l + start[i + 2] + 1, l + start[i + 3]};
+        std::array<double, 4> x{};
+        for (int j = 0; j < 4; ++j) {
+          double& xj = x[static_cast<std::size_t>(j)];
+          xj = std::exchange(y[i + j], 0.0);
+          for (int p = 0; p < j; ++p) xj -= l[start[i + p] + j - p - 1] * x[static_cast<std::size_t>(p)];
+        }
+        subtract_four<width>(columns, x, rows + start[i + 3], slot[3] - start[i + 3], y);
+        for (int j = 0; j < 4; ++j) divide(i + j, x[static_cast<std::size_t>(j)], slot[j]);
+        reach += 3, slot += 3;
+        continue;
+      }
+      const double yi = y[i];
+      y[i] = 0.0;
+      for (int p = start[i]; p < *slot; ++p) y[rows[p]] -= l[p] * yi;
+      divide(i, yi, *slot);
     }
     // The pivot of a row of -C is its Schur complement in C + G A^-1 G^T: no weaker than what C has there.
     if (own < 0.0 && d > 0.5 * own) d = own;  // only round-off is left of a redundant row

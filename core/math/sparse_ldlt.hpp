@@ -47,6 +47,8 @@ class SparseLdlt {
  private:
   friend class TwofoldLdlt;
   friend class SaddleLanes;
+  template <int width>
+  bool eliminate(const double* values, double most);
   template <int R>
   void solve_fixed(double* b) const;
   template <class Factor, class Falls>
