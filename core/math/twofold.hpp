@@ -9,8 +9,9 @@
 
 namespace unfurl {
 
-// In the width that every 64-bit processor computes with.
+// In the width that every 64-bit processor computes with, and that of AVX2.
 typedef double DoublePair __attribute__((vector_size(16)));
+typedef double DoubleFour __attribute__((vector_size(32)));
 
 // What rounding takes from a product p = a b, by one instruction of the processor: for code that is compiled
 // for it and runs where there is one.
@@ -21,6 +22,10 @@ inline void rest_of_product(double a, double b, double p, double& rest) {
 [[gnu::target("fma")]] inline void rest_of_product(const DoublePair& a, const DoublePair& b,
                                                    const DoublePair& p, DoublePair& rest) {
   rest = __builtin_ia32_vfmaddpd(a, b, -p);
+}
+[[gnu::target("avx2,fma")]] inline void rest_of_product(const DoubleFour& a, const DoubleFour& b,
+                                                        const DoubleFour& p, DoubleFour& rest) {
+  rest = __builtin_ia32_vfmaddpd256(a, b, -p);
 }
 #else
 inline void rest_of_product(const DoublePair& a, const DoublePair& b, const DoublePair& p, DoublePair& rest) {
@@ -34,8 +39,8 @@ struct TwofoldOf {
   T hi{}, lo{};
 
   TwofoldOf() = default;
-  TwofoldOf(T x) : hi(x) {}  // implicit: every double is one
-  static TwofoldOf of(T high, T low) {
+  TwofoldOf(const T& x) : hi(x) {}  // implicit: every double is one
+  static TwofoldOf of(const T& high, const T& low) {
     TwofoldOf out(high);
     out.lo = low;
     return out;
@@ -43,18 +48,18 @@ struct TwofoldOf {
   explicit operator double() const requires std::is_same_v<T, double> { return hi + lo; }
 
   // a + b without rounding.
-  static TwofoldOf sum(T a, T b) {
+  static TwofoldOf sum(const T& a, const T& b) {
     const T s = a + b, c = s - a;
     return of(s, (a - (s - c)) + (b - c));
   }
   // The same for |a| >= |b|.
-  static TwofoldOf quick_sum(T a, T b) {
+  static TwofoldOf quick_sum(const T& a, const T& b) {
     const T s = a + b;
     return of(s, b - (s - a));
   }
   // a b without rounding; |a|, |b| below 1e300. Fused: by rest_of_product(), to the same bits.
   template <bool fused = false>
-  static TwofoldOf product(T a, T b) {
+  static TwofoldOf product(const T& a, const T& b) {
     const T p = a * b;
     T rest;
     if constexpr (fused) {

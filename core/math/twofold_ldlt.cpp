@@ -3,19 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <functional>
+#include <type_traits>
 
 namespace unfurl {
 namespace {
 
-// work(std::bool_constant<fused>()): products fused where the processor can (core/math/twofold.hpp).
+// work(std::bool_constant<fused>()): products fused, and four numbers at once, where the processor can
+// (core/math/twofold.hpp).
 #if defined(__x86_64__)
 template <class Work>
-[[gnu::target("fma"), gnu::flatten, gnu::noinline]] void work_fused(Work work) {
+[[gnu::target("avx2,fma"), gnu::flatten, gnu::noinline]] void work_fused(Work work) {
   work(std::true_type());
 }
 template <class Work>
 void with_fused(Work work) {
-  static const bool fused = __builtin_cpu_supports("fma");
+  static const bool fused = __builtin_cpu_supports("fma") && __builtin_cpu_supports("avx2");
   if (fused)
     work_fused(work);
   else
@@ -41,12 +45,42 @@ TwofoldPair times(const Twofold& a, const TwofoldPair& x) {
   return times<fused>(both(a, a), x);
 }
 
+// Four numbers at once, to the same bits: numbers 0, 2, 1, 3 of those at these places.
+using TwofoldFour = TwofoldOf<DoubleFour>;
+template <class Places>
+inline TwofoldFour four_of(const Twofold* x, Places place) {
+  DoublePair number[4];
+  for (int k = 0; k < 4; ++k) std::memcpy(&number[k], &x[place(k)], sizeof(DoublePair));
+  const DoubleFour a = __builtin_shufflevector(number[0], number[1], 0, 1, 2, 3),
+                   b = __builtin_shufflevector(number[2], number[3], 0, 1, 2, 3);
+  TwofoldFour out;
+  out.hi = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  out.lo = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  return out;
+}
+template <class Places>
+inline void store_four(const TwofoldFour& four, Twofold* x, Places place) {
+  const DoubleFour a = __builtin_shufflevector(four.hi, four.lo, 0, 4, 2, 6),
+                   b = __builtin_shufflevector(four.hi, four.lo, 1, 5, 3, 7);
+  const DoublePair number[4] = {__builtin_shufflevector(a, a, 0, 1), __builtin_shufflevector(a, a, 2, 3),
+                                __builtin_shufflevector(b, b, 0, 1), __builtin_shufflevector(b, b, 2, 3)};
+  for (int k = 0; k < 4; ++k) std::memcpy(static_cast<void*>(x + place(k)), &number[k], sizeof(DoublePair));
+}
+
 // b[rows[p]] -= l[p] y for p of [first, last), whose rows differ.
 template <bool fused>
 void subtract_column(const Twofold* l, const int* rows, std::size_t first, std::size_t last, const Twofold& y,
                      Twofold* b) {
-  const TwofoldPair twice = both(y, y);
   std::size_t p = first;
+  if constexpr (fused) {
+    const TwofoldFour four_times = four_of(&y, [](int) { return 0; });
+    for (; p + 4 <= last; p += 4) {
+      const auto row = [to = rows + p](int k) { return to[k]; };
+      store_four(four_of(b, row) - TwofoldFour::times<fused>(four_of(l + p, std::identity()), four_times), b,
+                 row);
+    }
+  }
+  const TwofoldPair twice = both(y, y);
   for (; p + 2 <= last; p += 2) {
     Twofold &u = b[rows[p]], &v = b[rows[p + 1]];
     const TwofoldPair left = both(u, v) - times<fused>(both(l[p], l[p + 1]), twice);
