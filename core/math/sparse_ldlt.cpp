@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <type_traits>
 #include <utility>
 
 #include "core/math/interleaved.hpp"
@@ -78,35 +80,39 @@ void SparseLdlt::analyse(const SparseRows& upper, const std::vector<int>& order)
   permuted_.assign(8 * n, 0.0);
 }
 
-// Whether columns i .. i + 3 of L have the same rows behind row i + 3: each has the next one's index for its
-// first row, and one row more than that.
-inline bool are_alike(int i, const int* start, const int* rows) {
-  return start[i + 1] - start[i] - 3 == start[i + 4] - start[i + 3] && start[i + 1] - start[i] > 3 &&
-         rows[start[i]] == i + 1 && rows[start[i + 1]] == i + 2 && rows[start[i + 2]] == i + 3;
+// How many columns of L from i on, `most` of them at most, have the same rows behind the last one: each has
+// the next one's index for its first row, and one row more than that.
+inline int columns_alike(int i, int most, const int* start, const int* rows) {
+  int n = 1;
+  for (; n < most; ++n, ++i)
+    if (start[i + 1] - start[i] != start[i + 2] - start[i + 1] + 1 || rows[start[i]] != i + 1) break;
+  return n;
 }
 
 // y[rows[p]] -= l[0][p] x[0], then l[1][p] x[1] and so on, for p < count: `width` rows that follow each other
 // by one instruction, to the same bits.
-template <int width>
-inline void subtract_four(const std::array<const double*, 4>& l, const std::array<double, 4>& x,
-                          const int* rows, int count, double* y) {
+template <int width, std::size_t columns>
+inline void subtract_columns(const std::array<const double*, columns>& l,
+                             const std::array<double, columns>& x, const int* rows, int count, double* y) {
   using Pack = Lanes<LaneCount(width, width)>;
   int p = 0;
   while (p < count) {
     double* const to = y + rows[p];
     if (p + width <= count && rows[p + width - 1] - rows[p] == width - 1) {
       Pack left(to);
-      for (std::size_t k = 0; k < 4; ++k) left = left - x[k] * Pack(l[k] + p);
+      for (std::size_t k = 0; k < columns; ++k) left = left - x[k] * Pack(l[k] + p);
       left.store(to);
       p += width;
     } else {
-      for (std::size_t k = 0; k < 4; ++k) *to -= l[k][p] * x[k];
+      for (std::size_t k = 0; k < columns; ++k) *to -= l[k][p] * x[k];
       ++p;
     }
   }
 }
 
 bool SparseLdlt::factorise(const double* values, double most) {
+  constexpr Index many = 8;  // entries of a column, in the mean: of fewer, one by one is as fast
+  if (factor_nonzeros() < many * n_) return eliminate<1>(values, most);
   bool held = false;
   with_widest([this, values, most, out = &held](auto width) { *out = eliminate<width()>(values, most); });
   return held;
@@ -133,31 +139,48 @@ bool SparseLdlt::eliminate(const double* values, double most) {
     const double own = y[k];
     double d = own;
     y[k] = 0.0;
-    const auto divide = [&](int i, double yi, int at) {
-      const double lki = yi * inverse_pivot[i];
-      d -= lki * yi;
-      l[at] = lki;
-    };
-    for (const int* const end = reach_.data() + reach_end[k]; reach != end; ++reach, ++slot) {
-      const int i = *reach;
-      if (end - reach > 3 && reach[3] == i + 3 && are_alike(i, start, rows)) {
-        const std::array<const double*, 4> columns{l + start[i] + 3, l + start[i + 1] + 2,
-                                                   l + start[i + 2] + 1, l + start[i + 3]};
-        std::array<double, 4> x{};
-        for (int j = 0; j < 4; ++j) {
-          double& xj = x[static_cast<std::size_t>(j)];
-          xj = std::exchange(y[i + j], 0.0);
-          for (int p = 0; p < j; ++p) xj -= l[start[i + p] + j - p - 1] * x[static_cast<std::size_t>(p)];
-        }
-        subtract_four<width>(columns, x, rows + start[i + 3], slot[3] - start[i + 3], y);
-        for (int j = 0; j < 4; ++j) divide(i + j, x[static_cast<std::size_t>(j)], slot[j]);
-        reach += 3, slot += 3;
-        continue;
+    // Of columns i and those behind it that are alike.
+    const auto take = [&](int i, auto number) {
+      constexpr int columns = number();
+      std::array<const double*, columns> of{};
+      std::array<double, columns> x{};
+      for (int j = 0; j < columns; ++j) {
+        double& xj = x[static_cast<std::size_t>(j)];
+        xj = std::exchange(y[i + j], 0.0);
+        for (int p = 0; p < j; ++p) xj -= l[start[i + p] + j - p - 1] * x[static_cast<std::size_t>(p)];
+        of[static_cast<std::size_t>(j)] = l + start[i + j] + columns - 1 - j;
       }
-      const double yi = y[i];
-      y[i] = 0.0;
-      for (int p = start[i]; p < *slot; ++p) y[rows[p]] -= l[p] * yi;
-      divide(i, yi, *slot);
+      const int behind = start[i + columns - 1];
+      subtract_columns<width>(of, x, rows + behind, slot[columns - 1] - behind, y);
+      for (int j = 0; j < columns; ++j) {
+        const double xj = x[static_cast<std::size_t>(j)], lki = xj * inverse_pivot[i + j];
+        d -= lki * xj;
+        l[slot[j]] = lki;
+      }
+      reach += columns, slot += columns;
+    };
+    for (const int* const end = reach_.data() + reach_end[k]; reach != end;) {
+      const int i = *reach, left = static_cast<int>(end - reach);
+      switch (width == 1 ? 1 : columns_alike(i, std::min(left, 4), start, rows)) {
+        case 4:
+          take(i, std::integral_constant<int, 4>());
+          break;
+        case 3:
+          take(i, std::integral_constant<int, 3>());
+          break;
+        case 2:
+          take(i, std::integral_constant<int, 2>());
+          break;
+        default:
+          const double yi = y[i];
+          y[i] = 0.0;
+          const int free = *slot;
+          for (int p = start[i]; p < free; ++p) y[rows[p]] -= l[p] * yi;
+          const double lki = yi * inverse_pivot[i];
+          d -= lki * yi;
+          l[free] = lki;
+          ++reach, ++slot;
+      }
     }
     // The pivot of a row of -C is its Schur complement in C + G A^-1 G^T: no weaker than what C has there.
     if (own < 0.0 && d > 0.5 * own) d = own;  // only round-off is left of a redundant row
