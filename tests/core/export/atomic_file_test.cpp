@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "core/export/checksum.hpp"
+#include "core/export/pending_files.hpp"
 #include "tests/support/not_tested.hpp"
 
 using namespace unfurl;
@@ -89,6 +90,23 @@ TEST_CASE("a pending file that is not committed is removed") {
   }
   CHECK_FALSE(fs::exists(temporary));
   CHECK(entries(scratch.path) == 0);
+}
+
+// What is whole and has its name stays; so does what is given up before, whose name is free again.
+TEST_CASE("a program that ends at once removes the files that are being written") {
+  const ScratchFolder scratch;
+  PendingFile whole(scratch.path / "whole.txt");
+  whole.commit();
+  fs::path given_up;
+  { given_up = PendingFile(scratch.path / "given_up.txt").name(); }
+  std::ofstream(given_up) << "another one's";
+  const PendingFile first(scratch.path / "a.csv"), second(scratch.path / "b.csv");
+  REQUIRE(entries(scratch.path) == 4);
+  remove_pending_files();
+  CHECK_FALSE(fs::exists(first.name()));
+  CHECK_FALSE(fs::exists(second.name()));
+  CHECK(fs::exists(scratch.path / "whole.txt"));
+  CHECK(fs::exists(given_up));
 }
 
 TEST_CASE("temporary names are new ones: random, never behind a link, and short enough for every target") {

@@ -213,6 +213,13 @@ TEST_CASE("a target that two strides of one sign step over is found where values
   CHECK(runs <= 74);
 }
 
+// Between the start and the first value beyond it, which is the second one asked for there, beside a wall.
+TEST_CASE("values that turn back beside the start are looked at when both sides have one") {
+  const auto f = [](double x) { return x < 1.016 ? 3 + (x - 1.003) * (x - 1.003) : none; };
+  const Solved s = solve_for(f, 3 + 1e-8, {.start = 1}, {});
+  CHECK(std::abs(s.x - 1.003) == Approx(1e-4).epsilon(1e-5));
+}
+
 // The least or most of a measure: from one side alone, and nothing lies beyond. Next to it the measure
 // differs by c |x - x_0|^p, so that a value met to 1e-12 of the values of strides (some 3 |x_0| + 3 away at
 // most) is an x within 1e-12 or 1e-6 of that; its own rounding, 1e-16 of 4, is less.
