@@ -63,8 +63,10 @@ class Blows {
       const bool new_here = blow == 0 && crossed_[k] && !sides_.active(i);
       if (!(u_[r] < (new_here ? -sides_.rounded_rate(i) : -sides_.zero_rate(i)))) continue;
       if (!movable) {
-        // No impulse moves it. What others hold needs no hold of its own.
-        if (-u_[r] <= std::max(sides_.stops()[i].rest_speed, 1e-9 * sides_.fastest(i, state_))) continue;
+        // No impulse moves it. What others hold needs no hold of its own; what they lead past its limit,
+        // however slowly, has none.
+        const double still = crossed_[k] ? sides_.zero_rate(i) : sides_.stops()[i].rest_speed;
+        if (-u_[r] <= std::max(still, 1e-9 * sides_.fastest(i, state_))) continue;
         return fail_at(r);
       }
       out_.struck[k] = true;

@@ -104,6 +104,42 @@ end_time = 0.4
   }
 }
 
+// A rebound slower than `rest_speed`, 1 mm/s unless a scene says otherwise, rests on a stop; a drive does
+// not, however slow it is.
+TEST_CASE("a drive slower than what rests on a stop does not go through it") {
+  for (const double rate : {1e-3, 5e-4, 2e-6})
+    for (const std::string method : {"dvm", "rk4", "generalized_alpha"}) {
+      const double gap = 1.5 * rate;
+      const Simulation run = run_scene(R"(
+[structure]
+kind = "custom"
+nodes = [{name = "A", position = [0, 0, 0], mass = 1}]
+constraints = [{kind = "line", nodes = ["A"], direction = [1, 0, 0]}]
+[[constraints]]
+kind = "coordinate"
+nodes = ["A"]
+direction = [1, 0, 0]
+motion = "rate"
+rate = )" + std::to_string(rate) + R"(
+[[constraints]]
+kind = "coordinate_stop"
+name = "wall"
+nodes = ["A"]
+direction = [1, 0, 0]
+max = )" + std::to_string(gap) + R"(
+[solver]
+step = 0.02
+end_time = 4
+method = ")" + method + '"');
+      INFO(method << " | " << rate << " | " << run.message);
+      REQUIRE(run.status == RunStatus::failed);
+      CHECK(run.message.find("a drive pushes against the stop wall") != std::string::npos);
+      // What counts as touching, 1e-11 of the length of 1 m that a point has, takes it 5e-6 s at 2e-6 m/s.
+      CHECK(run.trajectory.end_time() == Approx(1.5).epsilon(0).margin(1e-5));
+      CHECK(run.warnings.empty());
+    }
+}
+
 // From A over B to C there are 1 + sqrt(5) / 2 = 2.1180 m, which two rods keep: as built, or taken in by then
 // with 2.15 m, 0.1 m/s and half a ramp of 0.1 s.
 TEST_CASE("a cable that is drawn in along what keeps its length says so") {
