@@ -11,6 +11,7 @@ namespace unfurl {
 namespace {
 
 constexpr double rate_rounding = 1e-14;  // of the largest rate
+constexpr double loss_rounding = 1e-13;  // of what an impulse does on the rates before and behind it
 // Of all rates before an impact: it stops everything, and what acts, not what rounding leaves of the motion,
 // tells whether the stop is left.
 constexpr double all_stopped = 1e-13;
@@ -84,10 +85,36 @@ class Blows {
     if (!impulses) return fail_at(std::find(hit_.begin(), hit_.end(), 1.0) - hit_.begin());
     responses_.give(impulses->x, state_.w);
     // What is pushed unstruck, as what rests on another stop, gives or takes by rounding: a share of each.
-    const VectorXd lost = -0.5 * impulses->x.cwiseProduct(u_ + responses_.rates(state_.w));
-    const double of_struck = lost.dot(hit_), share = of_struck > 0 ? lost.sum() / of_struck : 1.0;
+    const VectorXd after = responses_.rates(state_.w), pushes = shared(*impulses);
+    VectorXd lost = -0.5 * pushes.cwiseProduct(u_ + after);
+    const VectorXd rounds = loss_rounding * pushes.cwiseProduct(u_.cwiseAbs() + after.cwiseAbs());
+    lost = (lost.array().abs() > rounds.array()).select(lost, 0);  // of what is thrown back as it came
+    const double all = -0.5 * impulses->x.dot(u_ + after), of_struck = lost.dot(hit_),
+                 share = of_struck > 0 ? all / of_struck : 1.0;
     out_.lost += share * lost.cwiseProduct(hit_);
     return true;
+  }
+
+  // Where stops meet one freedom at once the impulses are one choice of many, and rounding makes it. What
+  // each loses is told by the least of them, of least sum D_rr P_r^2: twice the nearest to the last, at a
+  // small cost.
+  VectorXd shared(const BoxSolution& impulses) const {
+    bool any = false;
+    for (Index r = 0; r < D_.rows(); ++r)
+      any = any || (hit_[r] > 0 && !impulses.held[static_cast<std::size_t>(r)] &&
+                    std::abs(impulses.w[r]) <= sides_.zero_rate(side(r)));
+    if (!any) return impulses.x;
+    constexpr double cost = 1e-5;
+    const VectorXd costs = cost * D_.diagonal();
+    MatrixXd D = D_;
+    D.diagonal() += costs;
+    VectorXd x = low_;
+    for (int k = 0; k < 2; ++k) {
+      const auto nearest = solve_box(D, b_ - costs.cwiseProduct(x), low_, high_);
+      if (!nearest) return impulses.x;
+      x = nearest->x;
+    }
+    return x;
   }
 
   // A push on what is being left would give energy: it is not to be in this blow. Without it another may be.

@@ -225,6 +225,47 @@ TEST_CASE("what holds keeps out of an impact whatever a method leaves of its rat
   }
 }
 
+// Two bodies of which one goes twice as fast as the other, each at its own wall: one freedom meets both, and
+// the least impulses, of unit work each, take as much at either wall, whatever the bodies weigh. A third body
+// has nothing to do with them and meets its wall at the same time. What throws back as it came loses nothing,
+// nor a negative rounding.
+TEST_CASE("walls that meet one freedom at once share what is lost") {
+  for (const double e : {0.0, 0.5, 1.0})
+    for (const bool turned : {false, true}) {
+      std::array<std::string, 2> walls;
+      for (const int k : {0, 1})
+        walls[static_cast<std::size_t>(k)] =
+            "[[constraints]]\nkind = 'coordinate_stop'\nname = '" + std::string(k == 0 ? "a" : "b") +
+            "'\nnodes = ['" + (k == 0 ? "A" : "B") +
+            "']\ndirection = [1, 0, 0]\nmax = " + number(k == 0 ? 0.3 : 0.6) +
+            "\nrestitution = " + number(e) + "\n";
+      const Simulation run = run_scene(
+          "[structure]\nkind = 'custom'\nnodes = [{name = 'A', position = [0, 0, 0], mass = 0.7, velocity = "
+          "[1.5, 0, 0]}, {name = 'B', position = [0, 1, 0], mass = 3.1, velocity = [3, 0, 0]}, {name = 'C', "
+          "position = [0, 2, 0], mass = 2.3, velocity = [-1.5, 0, 0]}]\nconstraints = [{kind = 'line', nodes "
+          "= ['A', 'B', 'C'], direction = [1, 0, 0]}]\n[solver]\nend_time = 0.25\n[[constraints]]\nkind = "
+          "'combination'\nterms = ['2 coordinate A along 1 0 0', '-1 coordinate B along 1 0 0']\n" +
+          walls[turned ? 1 : 0] + walls[turned ? 0 : 1] +
+          "[[constraints]]\nkind = 'coordinate_stop'\nname = 'c'\nnodes = ['C']\ndirection = [1, 0, 0]\n"
+          "min = -0.3\nrestitution = " +
+          number(e) + "\n");
+      INFO(e << " | " << turned << " | " << run.message);
+      REQUIRE(run.status == RunStatus::completed);
+      const auto lost = [&](const char* wall) {
+        const auto event = std::ranges::find(run.events, wall, &Event::element);
+        REQUIRE(event != run.events.end());
+        return event->energy_lost;
+      };
+      const double of_pair = 0.5 * (0.7 * 1.5 * 1.5 + 3.1 * 3 * 3) * (1 - e * e),
+                   of_third = 0.5 * 2.3 * 1.5 * 1.5 * (1 - e * e);
+      // 1e-10 is the square of the cost of impulses, 1e-11 what rounding leaves of a system of that cost.
+      CHECK(lost("a") == Approx(0.5 * of_pair).epsilon(1e-9).margin(0));
+      CHECK(lost("b") == Approx(0.5 * of_pair).epsilon(1e-9).margin(0));
+      CHECK(lost("c") == Approx(of_third).epsilon(1e-9).margin(0));
+      CHECK(lost("a") + lost("b") + lost("c") == Approx(of_pair + of_third).epsilon(1e-13).margin(0));
+    }
+}
+
 // The same bob, and far from it a drive whose velocity jumps: that is nothing to the string.
 TEST_CASE("what holds is not left where a drive jumps that has nothing to do with it") {
   const std::string scene =
