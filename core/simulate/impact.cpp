@@ -132,6 +132,11 @@ class Blows {
     for (Index r = 0; r < D_.rows(); ++r) of_rates[r] = rate_rounding * sides_.fastest(side(r), state_);
     auto impulses = solve_box(D_, b_, low_, high_, of_rates);
     if (impulses) return impulses;
+    // What two of them hold between them has no rate, whatever a method that drifts leaves of one.
+    for (Index r = 0; r < D_.rows(); ++r)
+      if (hit_[r] == 0 && std::abs(u_[r]) <= sides_.zero_rate(side(r))) u_[r] = b_[r] = 0;
+    impulses = solve_box(D_, b_, low_, high_, of_rates);
+    if (impulses) return impulses;
     // They throw it at each other; friction gives no impulses, and passes none on.
     std::vector<Index> pushing;
     for (Index r = 0; r < D_.rows(); ++r)

@@ -131,8 +131,7 @@ class Change {
     };
     bool drifts = false, turns = false;
     for (Index r = 0; r < count(); ++r) {
-      const bool met_now = sides_.is_stop(side(r)) && crossed(r);
-      const double off = held(r) ? u_met[r] : met_now ? u_met[r] - u[r] : 0.0;
+      const double off = held(r) ? u_met[r] : sides_.is_stop(side(r)) ? u_met[r] - u[r] : 0.0;
       drifts = drifts || std::abs(off) > sides_.zero_rate(side(r));
       if (sides_.is_friction(side(r)) && crossed(r)) keep(r), turns = !rows.empty();
     }
