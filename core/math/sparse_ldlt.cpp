@@ -139,48 +139,42 @@ bool SparseLdlt::eliminate(const double* values, double most) {
     const double own = y[k];
     double d = own;
     y[k] = 0.0;
-    // Of columns i and those behind it that are alike.
-    const auto take = [&](int i, auto number) {
-      constexpr int columns = number();
-      std::array<const double*, columns> of{};
-      std::array<double, columns> x{};
-      for (int j = 0; j < columns; ++j) {
-        double& xj = x[static_cast<std::size_t>(j)];
-        xj = std::exchange(y[i + j], 0.0);
-        for (int p = 0; p < j; ++p) xj -= l[start[i + p] + j - p - 1] * x[static_cast<std::size_t>(p)];
-        of[static_cast<std::size_t>(j)] = l + start[i + j] + columns - 1 - j;
+    for (const int* const end = reach_.data() + reach_end[k]; reach != end; ++reach, ++slot) {
+      const int i = *reach;
+      if constexpr (width > 1) {
+        // Columns i and those behind it that are alike.
+        const auto take = [&](auto number) {
+          constexpr int columns = number();
+          std::array<const double*, columns> of{};
+          std::array<double, columns> x{};
+          for (int j = 0; j < columns; ++j) {
+            double& xj = x[static_cast<std::size_t>(j)];
+            xj = std::exchange(y[i + j], 0.0);
+            for (int p = 0; p < j; ++p) xj -= l[start[i + p] + j - p - 1] * x[static_cast<std::size_t>(p)];
+            of[static_cast<std::size_t>(j)] = l + start[i + j] + columns - 1 - j;
+          }
+          const int behind = start[i + columns - 1];
+          subtract_columns<width>(of, x, rows + behind, slot[columns - 1] - behind, y);
+          for (int j = 0; j < columns; ++j) {
+            const double xj = x[static_cast<std::size_t>(j)], lki = xj * inverse_pivot[i + j];
+            d -= lki * xj;
+            l[slot[j]] = lki;
+          }
+          reach += columns - 1, slot += columns - 1;
+        };
+        const int alike = columns_alike(i, std::min(static_cast<int>(end - reach), 4), start, rows);
+        if (alike == 4) take(std::integral_constant<int, 4>());
+        if (alike == 3) take(std::integral_constant<int, 3>());
+        if (alike == 2) take(std::integral_constant<int, 2>());
+        if (alike > 1) continue;
       }
-      const int behind = start[i + columns - 1];
-      subtract_columns<width>(of, x, rows + behind, slot[columns - 1] - behind, y);
-      for (int j = 0; j < columns; ++j) {
-        const double xj = x[static_cast<std::size_t>(j)], lki = xj * inverse_pivot[i + j];
-        d -= lki * xj;
-        l[slot[j]] = lki;
-      }
-      reach += columns, slot += columns;
-    };
-    for (const int* const end = reach_.data() + reach_end[k]; reach != end;) {
-      const int i = *reach, left = static_cast<int>(end - reach);
-      switch (width == 1 ? 1 : columns_alike(i, std::min(left, 4), start, rows)) {
-        case 4:
-          take(i, std::integral_constant<int, 4>());
-          break;
-        case 3:
-          take(i, std::integral_constant<int, 3>());
-          break;
-        case 2:
-          take(i, std::integral_constant<int, 2>());
-          break;
-        default:
-          const double yi = y[i];
-          y[i] = 0.0;
-          const int free = *slot;
-          for (int p = start[i]; p < free; ++p) y[rows[p]] -= l[p] * yi;
-          const double lki = yi * inverse_pivot[i];
-          d -= lki * yi;
-          l[free] = lki;
-          ++reach, ++slot;
-      }
+      const double yi = y[i];
+      y[i] = 0.0;
+      const int free = *slot;
+      for (int p = start[i]; p < free; ++p) y[rows[p]] -= l[p] * yi;
+      const double lki = yi * inverse_pivot[i];
+      d -= lki * yi;
+      l[free] = lki;
     }
     // The pivot of a row of -C is its Schur complement in C + G A^-1 G^T: no weaker than what C has there.
     if (own < 0.0 && d > 0.5 * own) d = own;  // only round-off is left of a redundant row
