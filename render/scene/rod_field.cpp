@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/constraints/linear_rows.hpp"
 #include "core/diagnostics/force_round_off.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/length_error.hpp"
@@ -48,6 +49,13 @@ void leave_hidden_out(const Structure& structure, MatrixXd& values) {
 
 double middle_speed(const VectorXd&, const VectorXd& v, const Rod& rod, double) {
   return 0.5 * (v.segment<3>(3 * rod.a) + v.segment<3>(3 * rod.b)).norm();
+}
+
+// Rates that do not move a rod by more than rounding in all of the run are rounding.
+bool stays(const Trajectory& run, const MatrixXd& speeds) {
+  constexpr double rounding = 1e-12;  // of the structure
+  const double duration = run.end_time() - run.time(0);
+  return duration > 0 && !(magnitudes(speeds).most * duration > rounding * reference_length(run.structure()));
 }
 
 double size_of_length_error(const VectorXd& q, const VectorXd&, const Rod& rod, double t) {
@@ -119,6 +127,7 @@ RodField rod_field(const std::string& by, std::array<double, 2> range, const Sim
   } else if (by == "speed") {
     field.label = "speed (m/s)";
     field.values = over_run(run.trajectory, middle_speed);
+    if (stays(run.trajectory, field.values)) field.values.setZero();
   } else if (by == "constraint_error") {
     field.label = "error of length (m)";
     const std::vector<Rod>& rods = run.trajectory.structure().rods;

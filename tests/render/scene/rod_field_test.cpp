@@ -55,6 +55,32 @@ TEST_CASE("a rod's speed is that of its middle") {
   CHECK(field.high == Approx(5));  // a round number at or above all values
 }
 
+// A chain that hangs as gravity pulls, up to the digits of its positions, and would be coloured by them.
+TEST_CASE("a structure at rest has no speed, and one that creeps has") {
+  const std::string hangs = R"(
+[structure]
+kind = "custom"
+nodes = [{name = "P", position = [0.1, 0.2, 0.3], fixed = true}, {name = "A", position = [0.5, 0.5, -0.9]},
+         {name = "B", position = [0.9, 0.8, -2.1], velocity = [0, 0, 0]}]
+rods = [{nodes = ["P", "A"], mass = 1}, {nodes = ["A", "B"], mass = 2}]
+[gravity]
+acceleration = [4, 3, -12]
+[solver]
+step = 0.01
+end_time = 0.5
+)";
+  const auto field_of = [&](const std::vector<std::string>& changes) {
+    const Scene scene = read_scene_text(hangs, "hangs.toml", changes);
+    const Simulation run = simulate(build_model(scene), scene.solver);
+    CHECK(run.trajectory.node_velocities(run.trajectory.size() - 1).lpNorm<Eigen::Infinity>() > 0);
+    return rod_field("speed", {0, 0}, run, diagnose(run));
+  };
+  const RodField still = field_of({}), creeps = field_of({"structure.nodes[2].velocity=[3e-9,-4e-9,0]"});
+  CHECK(still.values.isZero(0));
+  CHECK(still.high == 1);
+  CHECK(creeps.at(0, 1) == Approx(2.5e-9).epsilon(1e-9));
+}
+
 TEST_CASE("a rod's force is the centripetal one, and tension is red") {
   const Run r;
   const RodField field = rod_field("axial_force", {0, 0}, r.run, r.diagnostics);
