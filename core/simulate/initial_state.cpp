@@ -75,9 +75,9 @@ InitialState initial_state(const Structure& structure, const System& system) {
     VectorXd back(system.coordinates());
     s.w = fitted_rates(system, 0.0, q, v);
     system.expand_rate(s.w, back);
-    const Index in_space = space_coordinates(structure);
-    const Eigen::Matrix3Xd change = (back - v).head(in_space).reshaped(3, in_space / 3);
-    out.velocity_change = in_space > 0 ? change.colwise().norm().maxCoeff() : 0.0;
+    for (Index i = 0; i < space_coordinates(structure); i += 3)
+      if (!v.segment<3>(i).isZero(0.0))
+        out.velocity_change = std::max(out.velocity_change, (back - v).segment<3>(i).norm());
   }
   System followed = system.at(s);
   followed.count_on(s);

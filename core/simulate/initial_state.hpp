@@ -17,7 +17,9 @@ namespace unfurl {
 // energy of the change) and the multipliers of the index-1 equations.
 struct InitialState {
   State state;
-  double velocity_change = 0;  // largest of the nodes: what the projection took away [m/s]
+  // Largest of the nodes that have a velocity: by how much the projection changed it [m/s]. Drives set others
+  // out.
+  double velocity_change = 0;
 };
 InitialState initial_state(const Structure& structure, const System& system);
 

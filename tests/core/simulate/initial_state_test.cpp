@@ -75,6 +75,12 @@ end_time = 0.1
   CHECK(run_scene(led).warnings.empty());
   // Against what was given, the other way.
   CHECK(run_scene(led, {"structure.nodes[0].velocity=[-0.1, 0, 0]"}).warnings.size() == 1);
+  // Beside it what flies by itself, as it was given; and across its guide, which it was not.
+  const std::string beside =
+      "structure.nodes[2]={name=\"B\", position=[0, 3, 0], mass=1, velocity=[1, 0.5, 0]}";
+  CHECK(run_scene(led, {beside}).warnings.empty());
+  CHECK(run_scene(led, {beside, "structure.constraints[2]={kind=\"line\", nodes=[\"B\"], direction=[1,0,0]}"})
+            .warnings.size() == 1);
 }
 
 }  // namespace initial_state_test

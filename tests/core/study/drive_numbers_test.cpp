@@ -93,10 +93,7 @@ inertia = 1e-4
   const InitialState start = initial_state(model->structure, model->system);
   VectorXd v(model->system.coordinates());
   model->system.expand_rate(start.state.w, v);
-  double most = 0;
-  for (std::size_t i = 0; i < 3; ++i)
-    most =
-        std::max(most, (v.segment<3>(3 * static_cast<Index>(i)) - model->structure.nodes[i].velocity).norm());
+  const double most = (v.segment<3>(6) - model->structure.nodes[2].velocity).norm();
   REQUIRE(most > 0.01);
   CHECK(start.velocity_change == Approx(most).epsilon(1e-12));
 }
