@@ -6,7 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/constraints/linear_rows.hpp"
 #include "core/diagnostics/force_round_off.hpp"
 #include "core/diagnostics/force_uniqueness.hpp"
 #include "core/diagnostics/length_error.hpp"
@@ -53,9 +52,11 @@ double middle_speed(const VectorXd&, const VectorXd& v, const Rod& rod, double) 
 
 // Rates that do not move a rod by more than rounding in all of the run are rounding.
 bool stays(const Trajectory& run, const MatrixXd& speeds) {
-  constexpr double rounding = 1e-12;  // of the structure
+  constexpr double rounding = 1e-12;  // of the longest rod
+  double length = 0;
+  for (const Rod& rod : run.structure().rods) length = std::max(length, rod.length);
   const double duration = run.end_time() - run.time(0);
-  return duration > 0 && !(magnitudes(speeds).most * duration > rounding * reference_length(run.structure()));
+  return duration > 0 && !(magnitudes(speeds).most * duration > rounding * length);
 }
 
 double size_of_length_error(const VectorXd& q, const VectorXd&, const Rod& rod, double t) {

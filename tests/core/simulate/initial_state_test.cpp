@@ -79,7 +79,7 @@ end_time = 0.1
   const std::string beside =
       "structure.nodes[2]={name=\"B\", position=[0, 3, 0], mass=1, velocity=[1, 0.5, 0]}";
   CHECK(run_scene(led, {beside}).warnings.empty());
-  CHECK(run_scene(led, {beside, "structure.constraints[2]={kind=\"line\", nodes=[\"B\"], direction=[1,0,0]}"})
+  CHECK(run_scene(led, {beside, "structure.constraints[1]={kind=\"line\", nodes=[\"B\"], direction=[1,0,0]}"})
             .warnings.size() == 1);
 }
 
