@@ -109,7 +109,8 @@ StepControl::Swing StepControl::swing(const State& state) {
         return std::sqrt(std::max(0.0, K / m - std::pow(0.5 * c / m, 2)));
       };
       const double c = damping(of_w, omega);
-      found = {damped(all, c + damping(of_a, omega), mass), by_rates ? damped(by_w, c, mass_w) : 0.0};
+      found.omega = std::max(found.omega, damped(all, c + damping(of_a, omega), mass));
+      if (by_rates) found.of_rates = std::max(found.of_rates, damped(by_w, c, mass_w));
     }
     of_w.swap(next_w), of_a.swap(next_a);
   }
