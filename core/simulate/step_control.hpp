@@ -14,9 +14,10 @@ namespace unfurl {
 // Rates [1/s] at which a motion turns and changes: over the rods of `structure` the largest omega, with which
 // v h + b h^2 / 2 = alpha for h = alpha / omega, v = |v_b - v_a| / l and b = |e x (a_b - a_a)| / l of a rod
 // along e, and the frequency of the fastest that swings in it by more than a millionth of the structure,
-// (|M^-1 K x| / |x|)^1/2 of forces F(z), K = -dF/dz (of w' h_0 as well, where it is at rest), where nothing
-// is driven; that of the fastest sine that something follows; and r = |w'| / (|w| + |w'| / r_0) in the mass
-// norm, which a motion from rest keeps below r_0.
+// (|M^-1 K x| / |x|)^1/2 of forces F(z), K = -dF/dz, in directions x of the motion (of w' h_0 as well, where
+// it is at rest) but those in which drives lead it, with rods that give only where nothing is driven; that of
+// the fastest sine that something follows; and r = |w'| / (|w| + |w'| / r_0) in the mass norm, which a motion
+// from rest keeps below r_0.
 //
 //     Q(z, w) = sqrt(1 + (h_0 (omega + r) / alpha)^2),     h_{n-1/2} h_{n+1/2} = (h_0 / Q(z_n, w_n))^2
 //
